@@ -1,0 +1,91 @@
+"""The disturbed integrator of paper B, eq. (5)-(7)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sinuous.arrays import Array, ArrayLike
+from sinuous.plants.plant import Measurement
+from sinuous.robots.robot import Robot
+
+
+@dataclass(frozen=True, kw_only=True)
+class Disturbance:
+    """Normally distributed disturbances, clipped and held for a while (5), (6).
+
+    Arguments:
+        length_std, length_max: of w_x, on the actuator lengths [m]
+        point_std, point_max: of w_y, on the body points, per axis [m]
+        rate: how often both are drawn anew [Hz]
+
+    Raises:
+        ValueError: if a value is negative or not finite
+    """
+
+    length_std: float = 0.0
+    length_max: float = np.inf
+    point_std: float = 0.0
+    point_max: float = np.inf
+    rate: float = 5.0
+
+    def __post_init__(self) -> None:
+        scales = (self.length_std, self.point_std, self.rate)
+        if not all(np.isfinite(v) and v >= 0.0 for v in scales) or self.rate == 0.0:
+            raise ValueError("standard deviations must be zero or more, the rate positive")
+        if not (self.length_max >= 0.0 and self.point_max >= 0.0):
+            raise ValueError("largest disturbances must be zero or more")
+
+    @classmethod
+    def printed(cls) -> "Disturbance":
+        """The values of paper B, III-B."""
+        return cls(length_std=0.2e-3, length_max=2e-3, point_std=1e-3, point_max=5e-3, rate=5.0)
+
+
+class KinematicPlant:
+    """Integrates actuator rates and disturbs what is seen: y = f(x + w_x) + w_y (7).
+
+    w_x is drawn for every actuator, which leaves the sum rule (19); the shape is that of the
+    nearest lengths that keep it: the backbone as disturbed, the bend by least squares over
+    the cables (notes B14).  w_y moves every body point but the fixed base.
+
+    Arguments:
+        robot: the robot to imitate
+        seed: of the disturbances
+        disturbance: None for an exact plant
+        start: configuration (n,) to start from, by default the robot's home
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        *,
+        seed: int,
+        disturbance: Disturbance | None = None,
+        start: ArrayLike | None = None,
+    ) -> None:
+        self.robot = robot
+        self._rng = np.random.default_rng(seed)
+        self._disturbance = disturbance or Disturbance()
+        self._lengths = robot.lengths(robot.home if start is None else start)
+        self._until_redraw = 0.0
+        self._w_x = np.zeros(len(self._lengths))
+        self._w_y = np.zeros((len(robot.radii), 3))
+
+    def step(self, rates: Array, dt: float) -> Measurement:
+        """Move with actuator rates (P,) [m/s] for dt [s] and measure."""
+        self._lengths = self._lengths + dt * np.asarray(rates, dtype=float)
+        if self._until_redraw <= 1e-9 * dt:
+            self._draw()
+            self._until_redraw += 1.0 / self._disturbance.rate
+        self._until_redraw -= dt
+        c = self.robot.configuration(self._lengths + self._w_x)
+        points = self.robot.points(c) + self._w_y
+        return Measurement(points=points, tip=points[-1], lengths=self._lengths)
+
+    def _draw(self) -> None:
+        d = self._disturbance
+        lengths = self._rng.normal(0.0, 1.0, self._w_x.shape)
+        points = self._rng.normal(0.0, 1.0, self._w_y.shape)
+        self._w_x = np.clip(d.length_std * lengths, -d.length_max, d.length_max)
+        self._w_y = np.clip(d.point_std * points, -d.point_max, d.point_max)
+        self._w_y[0] = 0.0

@@ -1,0 +1,426 @@
+"""Tendon-driven robots of constant-curvature segments (paper B, section II-A).
+
+Each segment has the coordinates (theta_x, theta_y, gamma): its bend vector and its arc
+length.  Its cables then have the lengths q_m = gamma - r_m (theta_x cos s_m + theta_y
+sin s_m), so the cable-sum rule (19) holds for every configuration and a straight segment
+(theta = 0) is an ordinary point.
+"""
+
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from functools import cached_property
+from math import ceil, hypot
+from typing import Self
+
+import numpy as np
+
+from sinuous.arrays import Array, ArrayLike, IntArray
+from sinuous.robots import pcc_kernels
+from sinuous.robots.pcc_kernels import Chain
+
+# Bends smaller than this have no direction worth naming: the slack's gradient ignores them.
+STRAIGHT = 1e-9
+
+
+class CableConvention(Enum):
+    """Where a cable's length is counted."""
+
+    SEGMENT = "segment"  # inside its own segment, as paper B does
+    MOTOR = "motor"  # from the robot's base, through all proximal segments
+
+
+@dataclass(frozen=True, kw_only=True)
+class Segment:
+    """One bending segment."""
+
+    length: tuple[float, float]  # shortest and longest backbone [m]; equal: fixed length
+    home_length: float  # [m]
+    disks: int
+    cable_angles: tuple[float, ...]  # of the holes about local z [rad], three or more
+    pitch_radii: tuple[float, ...]  # from the backbone to each cable [m]
+    body_radius: float  # [m]
+    disk_thickness: float  # [m]
+    max_curvature: float  # [1/m], inf if only the disks limit it
+    cable_length: tuple[float, float]  # shortest and longest, in the robot's convention [m]
+
+    @property
+    def extensible(self) -> bool:
+        """Whether the backbone is an actuator."""
+        return self.length[0] < self.length[1]
+
+    @property
+    def holes(self) -> Array:
+        """Offsets (m, 2) of the cables from the backbone [m]."""
+        angles, radii = np.array(self.cable_angles), np.array(self.pitch_radii)
+        return radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+    @property
+    def bend_planes(self) -> Array:
+        """Rows (slope, offset) of the largest bend |theta| <= slope gamma + offset [rad].
+
+        The first is the stated curvature limit, the second the disks touching on the inner
+        side: kappa = (1 - t / h) / rho with the spacing h = gamma / n (paper B eq. 20).
+        """
+        touching = (1.0 / self.body_radius, -self.disks * self.disk_thickness / self.body_radius)
+        stated = [(self.max_curvature, 0.0)] if np.isfinite(self.max_curvature) else []
+        return np.array([*stated, touching])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Insertion:
+    """A stage that pushes the robot's base along its z axis on a straight shaft."""
+
+    travel: tuple[float, float]  # [m]
+    home: float  # [m]
+    radius: float  # of the shaft [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tool:
+    """A rigid tool or sensor whose end is the tip."""
+
+    offset: tuple[float, float, float]  # from the last disk, in its frame [m]
+    radius: float  # [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedLimits:
+    """Largest actuator speeds [m/s], the same in both directions."""
+
+    cable: float
+    backbone: float
+    insertion: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Section:
+    """A stretch of the body: where its coordinates stand and how finely it is guarded."""
+
+    theta: int  # column of theta_x, -1: straight
+    gamma: int  # column of the length, -1: fixed
+    longest: float  # [m]
+    direction: tuple[float, float, float]
+    radius: float  # [m]
+    disks: int
+    pieces: int  # arcs between guarded points, a multiple of the disks
+    curvature: float  # largest [1/m]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PccRobot:
+    """Any number of constant-curvature segments, with an optional stage and tool.
+
+    Coordinates (n,): [insertion], then per segment theta_x, theta_y [rad] and, where it is
+    extensible, gamma [m].  Actuators (P,): [insertion], then per segment its cables and,
+    where it is extensible, its backbone [m].
+    """
+
+    name: str
+    segments: tuple[Segment, ...]
+    speed: SpeedLimits
+    convention: CableConvention = CableConvention.SEGMENT
+    insertion: Insertion | None = None
+    tool: Tool | None = None
+    spacing: float = 0.003  # largest arc between guarded points [m]
+    T_w_b: Array = field(default_factory=lambda: np.eye(4))  # base in the mesh's frame
+
+    def at(self, T_w_b: ArrayLike) -> Self:
+        """The same robot with its base at T_w_b (4, 4)."""
+        return replace(self, T_w_b=np.array(T_w_b, dtype=float))
+
+    def sampled(self, spacing: float) -> Self:
+        """The same robot with its body guarded every `spacing` [m]."""
+        return replace(self, spacing=spacing)
+
+    # --- coordinates and actuators -------------------------------------------------------
+
+    @cached_property
+    def _columns(self) -> list[tuple[int, int]]:
+        """Columns (theta_x, gamma or -1) of every segment."""
+        column, columns = (1 if self.insertion else 0), list[tuple[int, int]]()
+        for segment in self.segments:
+            columns.append((column, column + 2 if segment.extensible else -1))
+            column += 3 if segment.extensible else 2
+        return columns
+
+    @cached_property
+    def coordinate_names(self) -> tuple[str, ...]:
+        names = ["insertion"] if self.insertion else []
+        for j, segment in enumerate(self.segments, 1):
+            names += [f"segment {j} theta_x", f"segment {j} theta_y"]
+            names += [f"segment {j} length"] if segment.extensible else []
+        return tuple(names)
+
+    @cached_property
+    def actuator_names(self) -> tuple[str, ...]:
+        names = ["insertion"] if self.insertion else []
+        for j, segment in enumerate(self.segments, 1):
+            names += [f"segment {j} cable {m}" for m in range(1, len(segment.cable_angles) + 1)]
+            names += [f"segment {j} backbone"] if segment.extensible else []
+        return tuple(names)
+
+    @cached_property
+    def bend_names(self) -> tuple[str, ...]:
+        return tuple(
+            f"segment {j} {'bend' if row == len(s.bend_planes) - 1 else 'curvature'}"
+            for j, s in enumerate(self.segments, 1)
+            for row in range(len(s.bend_planes))
+        )
+
+    @cached_property
+    def home(self) -> Array:
+        c = np.zeros(len(self.coordinate_names))
+        if self.insertion:
+            c[0] = self.insertion.home
+        for segment, (_, gamma) in zip(self.segments, self._columns, strict=True):
+            if gamma >= 0:
+                c[gamma] = segment.home_length
+        return c
+
+    @cached_property
+    def rate_limits(self) -> Array:
+        fastest = [self.speed.insertion] if self.insertion else []
+        for segment in self.segments:
+            fastest += [self.speed.cable] * len(segment.cable_angles)
+            fastest += [self.speed.backbone] if segment.extensible else []
+        return np.stack([-np.array(fastest), np.array(fastest)], axis=1)
+
+    @cached_property
+    def length_limits(self) -> Array:
+        limits = [self.insertion.travel] if self.insertion else []
+        shortest, longest = 0.0, 0.0
+        for segment in self.segments:
+            if self.convention is CableConvention.SEGMENT:
+                shortest, longest = 0.0, 0.0
+            shortest, longest = shortest + segment.length[0], longest + segment.length[1]
+            limits += [segment.cable_length] * len(segment.cable_angles)
+            limits += [(shortest, longest)] if segment.extensible else []
+        return np.array(limits)
+
+    # --- actuator lengths ----------------------------------------------------------------
+
+    @cached_property
+    def _length_map(self) -> tuple[Array, Array]:
+        """A (P, n) and b (P,) with lengths = A c + b."""
+        A = np.zeros((len(self.actuator_names), len(self.coordinate_names)))
+        b = np.zeros(len(self.actuator_names))
+        row = 0
+        if self.insertion:
+            A[0, 0] = 1.0
+            row = 1
+        for j, segment in enumerate(self.segments):
+            first = 0 if self.convention is CableConvention.MOTOR else j
+            holes = segment.holes
+            backbone = row + len(holes)
+            rows = slice(row, backbone + (1 if segment.extensible else 0))
+            for passed in range(first, j + 1):
+                theta, gamma = self._columns[passed]
+                A[row:backbone, theta : theta + 2] -= holes
+                if gamma >= 0:
+                    A[rows, gamma] += 1.0
+                else:
+                    b[rows] += self.segments[passed].home_length
+            row = rows.stop
+        return A, b
+
+    def lengths(self, c: ArrayLike) -> Array:
+        """Actuator lengths (..., P) [m] of configurations (..., n), paper B eq. (1), (19)."""
+        A, b = self._length_map
+        return np.asarray(c, dtype=float) @ A.T + b
+
+    def lengths_jacobian(self, c: ArrayLike) -> Array:
+        """Derivative (P, n) of the lengths; constant, because they are affine in c."""
+        return self._length_map[0]
+
+    def configuration(self, lengths: ArrayLike) -> Array:
+        """Configuration (..., n) of actuator lengths (..., P).
+
+        The backbone reading gives gamma, least squares over the cables give the bend.  If
+        the lengths violate (19), the violation is what least squares leaves over.
+        """
+        q = np.asarray(lengths, dtype=float)
+        c = np.zeros((*q.shape[:-1], len(self.coordinate_names)))
+        A, b = self._length_map
+        row = 0
+        if self.insertion:
+            c[..., 0] = q[..., 0]
+            row = 1
+        for segment, (theta, gamma) in zip(self.segments, self._columns, strict=True):
+            cables = slice(row, row + len(segment.cable_angles))
+            row = cables.stop
+            if gamma >= 0:
+                c[..., gamma] = q[..., row] - (c @ A[row] + b[row])
+                row += 1
+            rest = q[..., cables] - (c @ A[cables].T + b[cables])
+            c[..., theta : theta + 2] = -rest @ np.linalg.pinv(segment.holes).T
+        return c
+
+    # --- body ----------------------------------------------------------------------------
+
+    @cached_property
+    def _sections(self) -> list[_Section]:
+        sections = list[_Section]()
+
+        def add(longest: float, radius: float, disks: int, curvature: float = 0.0,
+                theta: int = -1, gamma: int = -1,
+                direction: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> None:
+            pieces = disks * max(1, ceil(longest / disks / self.spacing - 1e-9))
+            sections.append(_Section(theta=theta, gamma=gamma, longest=longest, radius=radius,
+                                     disks=disks, pieces=pieces, curvature=curvature,
+                                     direction=direction))  # fmt: skip
+
+        if self.insertion:
+            add(max(map(abs, self.insertion.travel)), self.insertion.radius, 1, gamma=0)
+        for segment, (theta, gamma) in zip(self.segments, self._columns, strict=True):
+            slope, offset = segment.bend_planes.T
+            curvature = float(np.min(slope + offset / segment.length[1]))
+            longest = segment.length[1] if gamma >= 0 else segment.home_length
+            add(longest, segment.body_radius, segment.disks, curvature, theta, gamma)
+        if self.tool and hypot(*self.tool.offset) > 0.0:
+            reach = hypot(*self.tool.offset)
+            x, y, z = (value / reach for value in self.tool.offset)
+            add(reach, self.tool.radius, 1, direction=(x, y, z))
+        return sections
+
+    @cached_property
+    def _chain(self) -> Chain:
+        sections = self._sections
+        section = np.concatenate([[0], *([m] * s.pieces for m, s in enumerate(sections))])
+        steps = [np.arange(1, s.pieces + 1) / s.pieces for s in sections]
+        return Chain(
+            theta_column=np.array([s.theta for s in sections]),
+            gamma_column=np.array([s.gamma for s in sections]),
+            fixed_length=np.array([s.longest for s in sections]),
+            direction=np.array([s.direction for s in sections]),
+            section=section.astype(np.int64),
+            fraction=np.concatenate([[0.0], *steps]),
+        )
+
+    @cached_property
+    def radii(self) -> Array:
+        """Body radius [m] (S,); where two sections meet, the larger one."""
+        first = [self._sections[0].radius]
+        radii = np.concatenate([first, *([s.radius] * s.pieces for s in self._sections)])
+        return self._worse_at_joints(radii)
+
+    @cached_property
+    def disk_indices(self) -> IntArray:
+        indices, start = list[int](), 0
+        for s in self._sections:
+            if s.theta >= 0:
+                indices += range(start + s.pieces // s.disks, start + s.pieces + 1,
+                                 s.pieces // s.disks)  # fmt: skip
+            start += s.pieces
+        return np.array(indices, dtype=np.int64)
+
+    def required_distance(self, margin: float) -> Array:
+        """Distance [m] (S,) of the guarded points that keeps the whole body at the margin.
+
+        Between two points an arc of length D and curvature k stays within the balls of
+        radius sqrt((rho + margin)^2 + (D/2)^2) + k D^2 / 8 around them (notes B7).
+        """
+        arcs = [(s.longest / s.pieces, s.curvature, s.pieces) for s in self._sections]
+        half = np.concatenate([[arcs[0][0] / 2], *([d / 2] * count for d, _, count in arcs)])
+        sagitta = np.concatenate(
+            [[arcs[0][1] * arcs[0][0] ** 2 / 8],
+             *([k * d * d / 8] * count for d, k, count in arcs)]
+        )  # fmt: skip
+        half, sagitta = self._worse_at_joints(half), self._worse_at_joints(sagitta)
+        return np.hypot(self.radii + margin, half) + sagitta
+
+    def _worse_at_joints(self, values: Array) -> Array:
+        """Where two sections meet, the larger value of the two (S,)."""
+        worse, joint = values.copy(), 0
+        for s in self._sections[:-1]:
+            joint += s.pieces
+            worse[joint] = max(values[joint], values[joint + 1])
+        return worse
+
+    def points(self, c: ArrayLike) -> Array:
+        """Guarded points (..., S, 3) in the world frame [m], the base first, the tip last."""
+        flat, shape = self._flat(c)
+        out = np.empty((len(flat), len(self.radii), 3))
+        pcc_kernels.points_batch(self._chain, self.T_w_b, flat, out)
+        return out.reshape(*shape, *out.shape[1:])
+
+    def points_jacobian(self, c: ArrayLike) -> Array:
+        """Derivative (..., S, 3, n) of the points by the configuration, analytic."""
+        flat, shape = self._flat(c)
+        out = np.empty((len(flat), len(self.radii), 3, flat.shape[1]))
+        pcc_kernels.points_jacobian_batch(self._chain, self.T_w_b, flat, out)
+        return out.reshape(*shape, *out.shape[1:])
+
+    def tip(self, c: ArrayLike) -> Array:
+        """Tip position (..., 3) [m]."""
+        return self.tip_pose(c)[..., :3, 3]
+
+    def tip_pose(self, c: ArrayLike) -> Array:
+        """Tip pose T_w_t (..., 4, 4); its z axis points along the last section."""
+        flat, shape = self._flat(c)
+        sections = len(self._sections)
+        T = np.tile(np.eye(4), (len(flat), 1, 1))
+        R, p = np.empty((sections + 1, 3, 3)), np.empty((sections + 1, 3))
+        for pose, one in zip(T, flat, strict=True):
+            pcc_kernels.frames(self._chain, self.T_w_b, one, R, p)
+            pose[:3, :3], pose[:3, 3] = R[-1], p[-1]
+        return T.reshape(*shape, 4, 4)
+
+    def points_curvature(self, c: ArrayLike, forces: Array) -> Array:
+        """Derivative (n, n) of the generalised force sum_s J_s' f_s, with f (S, 3) held.
+
+        By central differences of the analytic Jacobian: it shapes the step of an optimiser
+        and needs no more than a few digits.
+        """
+        value = np.asarray(c, dtype=float)
+        out = np.empty((len(value), len(value)))
+        pcc_kernels.curvature(self._chain, self.T_w_b, value, forces, out)
+        return out
+
+    def point_name(self, index: int) -> str:
+        """Where on the body a guarded point lies, in words."""
+        section = self._sections[self._chain.section[index]]
+        part = "the tool"
+        if section.theta >= 0:
+            part = f"segment {[theta for theta, _ in self._columns].index(section.theta) + 1}"
+        elif section.gamma == 0 and self.insertion:
+            part = "the insertion shaft"
+        return f"{self._chain.fraction[index]:.0%} of {part}"
+
+    def _flat(self, c: ArrayLike) -> tuple[Array, tuple[int, ...]]:
+        value = np.asarray(c, dtype=float)
+        return np.ascontiguousarray(value.reshape(-1, value.shape[-1])), value.shape[:-1]
+
+    # --- bend limits ---------------------------------------------------------------------
+
+    @cached_property
+    def _bend_limits(self) -> tuple[IntArray, Array, Array, Array]:
+        """Column of theta_x, map (J, n) and offset (J,) of the largest bend, pitch radius."""
+        thetas, slopes, offsets, pitches = list[int](), list[Array](), list[float](), list[float]()
+        for segment, (theta, gamma) in zip(self.segments, self._columns, strict=True):
+            for slope, offset in segment.bend_planes:
+                row = np.zeros(len(self.coordinate_names))
+                if gamma >= 0:
+                    row[gamma] = slope
+                thetas.append(theta)
+                slopes.append(row)
+                offsets.append(offset + (0.0 if gamma >= 0 else slope * segment.home_length))
+                pitches.append(max(segment.pitch_radii))
+        return np.array(thetas), np.array(slopes), np.array(offsets), np.array(pitches)
+
+    def bend_slack(self, c: ArrayLike) -> Array:
+        """Cable travel left (..., J) [m] until a segment's bend limit (20): r (limit - |theta|)."""
+        value = np.asarray(c, dtype=float)
+        theta, slope, offset, pitch = self._bend_limits
+        bend = np.hypot(value[..., theta], value[..., theta + 1])
+        return pitch * (value @ slope.T + offset - bend)
+
+    def bend_slack_jacobian(self, c: ArrayLike) -> Array:
+        """Derivative (J, n) of the bend slack at one configuration (n,)."""
+        value = np.asarray(c, dtype=float)
+        theta, slope, _, pitch = self._bend_limits
+        bend = np.hypot(value[theta], value[theta + 1])
+        rows, inverse = np.arange(len(theta)), 1.0 / np.where(bend > STRAIGHT, bend, np.inf)
+        jacobian = slope.copy()
+        for k in range(2):
+            jacobian[rows, theta + k] -= value[theta + k] * inverse
+        return pitch[:, None] * jacobian

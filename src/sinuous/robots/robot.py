@@ -1,0 +1,96 @@
+"""What every robot offers: one interface, so that no controller knows a robot by name."""
+
+from typing import Protocol, Self
+
+from sinuous.arrays import Array, ArrayLike, IntArray
+
+
+class Robot(Protocol):
+    """A continuum robot as an immutable value; c (..., n) is its configuration.
+
+    Actuator lengths are affine or smooth in c and satisfy the robot's coupling rules
+    (paper B eq. 19) identically, so the configuration has no equality constraints.
+    Points and tip are in the world frame, which is the frame of the mesh.
+    """
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def home(self) -> Array:
+        """Configuration (n,) to start from."""
+        ...
+
+    @property
+    def coordinate_names(self) -> tuple[str, ...]: ...
+    @property
+    def actuator_names(self) -> tuple[str, ...]: ...
+    @property
+    def radii(self) -> Array:
+        """Body radius [m] at every guarded point (S,)."""
+        ...
+
+    @property
+    def disk_indices(self) -> IntArray:
+        """Which of the guarded points are disks (D,)."""
+        ...
+
+    @property
+    def rate_limits(self) -> Array:
+        """Slowest and fastest actuator rates [m/s] (P, 2)."""
+        ...
+
+    @property
+    def length_limits(self) -> Array:
+        """Shortest and longest actuator lengths [m] (P, 2)."""
+        ...
+
+    @property
+    def bend_names(self) -> tuple[str, ...]: ...
+
+    def at(self, T_w_b: ArrayLike) -> Self:
+        """The same robot with its base at T_w_b (4, 4)."""
+        ...
+
+    def points(self, c: ArrayLike) -> Array:
+        """Guarded points (..., S, 3) along the body, from base to tip [m]."""
+        ...
+
+    def points_jacobian(self, c: ArrayLike) -> Array:
+        """Their derivative by c (..., S, 3, n)."""
+        ...
+
+    def points_curvature(self, c: ArrayLike, forces: Array) -> Array:
+        """Derivative (n, n) of the generalised force sum_s J_s' f_s, with f (S, 3) held."""
+        ...
+
+    def point_name(self, index: int) -> str:
+        """Where on the body a guarded point lies, in words."""
+        ...
+
+    def required_distance(self, margin: float) -> Array:
+        """Distance [m] (S,) the guarded points must keep so that the body keeps the margin."""
+        ...
+
+    def tip(self, c: ArrayLike) -> Array:
+        """Tip position (..., 3) [m]."""
+        ...
+
+    def lengths(self, c: ArrayLike) -> Array:
+        """Actuator lengths (..., P) [m]."""
+        ...
+
+    def lengths_jacobian(self, c: ArrayLike) -> Array:
+        """Their derivative by c (P, n)."""
+        ...
+
+    def configuration(self, lengths: ArrayLike) -> Array:
+        """Configuration (..., n) that explains actuator lengths (..., P) best."""
+        ...
+
+    def bend_slack(self, c: ArrayLike) -> Array:
+        """Cable travel left until each bend limit [m] (..., J); negative: bent too far."""
+        ...
+
+    def bend_slack_jacobian(self, c: ArrayLike) -> Array:
+        """Its derivative by c (J, n)."""
+        ...
