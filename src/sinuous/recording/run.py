@@ -1,0 +1,122 @@
+"""What is known about a run: its header, one control step, and all steps stacked."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from sinuous.arrays import Array, ArrayLike, IntArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Header:
+    """Everything about a run that does not change while it runs."""
+
+    name: str
+    robot: str  # the robot file, TOML text
+    scenario: str  # the scenario file, TOML text
+    actuator_names: tuple[str, ...]  # (P,)
+    rate_limits: Array  # (P, 2) slowest and fastest rate of each actuator [m/s]
+    margin: float  # required body clearance [m]
+    dt: float  # control period [s]
+    seed: int
+    versions: dict[str, str]  # package name -> version
+    zone_triangles: Array  # (T, 3, 3) corners in the mesh's frame [m]; T = 0 in free space
+    disk_indices: IntArray  # (D,) which of the body points are disk centres
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Sample:
+    """One control step. Positions are in the mesh's frame."""
+
+    time: float  # simulated time [s], zero or later
+    target: Array  # (3,) [m]
+
+    configuration: Array  # (n,) nominal, robot coordinates
+    lengths: Array  # (P,) nominal actuator lengths [m]
+    rates: Array  # (P,) commanded actuator rates [m/s]
+    nominal_points: Array  # (S, 3) body points of the model [m]
+    nominal_tip: Array  # (3,) [m]
+    nominal_clearance: float  # least clearance of the body surface [m], inf in free space
+
+    measured_points: Array  # (S, 3) body points of the plant [m]
+    measured_tip: Array  # (3,) [m]
+    measured_lengths: Array  # (P,) [m]
+    actual_clearance: float  # as nominal_clearance, of the plant's body [m]
+
+    status: str
+    solve_time: float  # wall-clock time the controller took [s]
+    iterations: int
+    planes: int  # triangle planes in the problem
+    step_fraction: float  # how much of the planned step the safety filter let through, 0 to 1
+    active: tuple[str, ...]  # what limits the robot right now, for people
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recording:
+    """All steps of a run; each field of `Sample`, stacked along a first axis of K steps."""
+
+    header: Header
+    complete: bool  # False if the file was cut off; all steps up to the cut are here
+
+    time: Array  # (K,) [s]
+    target: Array  # (K, 3) [m]
+
+    configuration: Array  # (K, n)
+    lengths: Array  # (K, P) [m]
+    rates: Array  # (K, P) [m/s]
+    nominal_points: Array  # (K, S, 3) [m]
+    nominal_tip: Array  # (K, 3) [m]
+    nominal_clearance: Array  # (K,) [m]
+
+    measured_points: Array  # (K, S, 3) [m]
+    measured_tip: Array  # (K, 3) [m]
+    measured_lengths: Array  # (K, P) [m]
+    actual_clearance: Array  # (K,) [m]
+
+    status: tuple[str, ...]  # (K,)
+    solve_time: Array  # (K,) [s]
+    iterations: IntArray  # (K,)
+    planes: IntArray  # (K,)
+    step_fraction: Array  # (K,)
+    active: tuple[tuple[str, ...], ...]  # (K,)
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @classmethod
+    def from_samples(
+        cls, header: Header, samples: Sequence[Sample], *, complete: bool = True
+    ) -> Self:
+        """Stack samples, of a file or straight from a session."""
+        p = len(header.actuator_names)
+        return cls(
+            header=header,
+            complete=complete,
+            time=_stack([s.time for s in samples], ()),
+            target=_stack([s.target for s in samples], (3,)),
+            configuration=_stack([s.configuration for s in samples], (0,)),
+            lengths=_stack([s.lengths for s in samples], (p,)),
+            rates=_stack([s.rates for s in samples], (p,)),
+            nominal_points=_stack([s.nominal_points for s in samples], (0, 3)),
+            nominal_tip=_stack([s.nominal_tip for s in samples], (3,)),
+            nominal_clearance=_stack([s.nominal_clearance for s in samples], ()),
+            measured_points=_stack([s.measured_points for s in samples], (0, 3)),
+            measured_tip=_stack([s.measured_tip for s in samples], (3,)),
+            measured_lengths=_stack([s.measured_lengths for s in samples], (p,)),
+            actual_clearance=_stack([s.actual_clearance for s in samples], ()),
+            status=tuple(s.status for s in samples),
+            solve_time=_stack([s.solve_time for s in samples], ()),
+            iterations=np.array([s.iterations for s in samples], dtype=np.int64),
+            planes=np.array([s.planes for s in samples], dtype=np.int64),
+            step_fraction=_stack([s.step_fraction for s in samples], ()),
+            active=tuple(s.active for s in samples),
+        )
+
+
+def _stack(rows: Sequence[ArrayLike], shape: tuple[int, ...]) -> Array:
+    """Stack rows; without any, an empty array whose rows would have that shape."""
+    if not rows:
+        return np.empty((0, *shape))
+    return np.array(rows, dtype=np.float64)

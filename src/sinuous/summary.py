@@ -1,0 +1,83 @@
+"""A run in a few numbers, as `summary.json` holds them."""
+
+import math
+
+import numpy as np
+
+from sinuous.arrays import Array, BoolArray
+from sinuous.recording import Recording
+
+MARGIN_TOLERANCE = 1e-9
+"""[m] below the margin by less is not a violation: rounding, a thousandth of a micrometre."""
+
+FAILED = "holding"
+"""Status of a step whose solve failed, so that the controller held still."""
+
+
+def summarise(recording: Recording, *, wall_time: float | None = None) -> dict[str, object]:
+    """The numbers of a run, ready for JSON: what is not finite, or not known, is None.
+
+    `tip_error_rms_m`, `tip_error_final_m`
+        distance from the measured tip to the target of the same step, root mean square over
+        all steps and in the last one; for a target that jumps, the way there counts
+    `min_clearance_nominal_m`, `min_clearance_actual_m`
+        least clearance of the body surface over all steps, of the controller's model and of
+        the plant; negative inside a wall, None where there is no wall
+    `margin_violations`
+        number of steps whose nominal clearance is below the margin by more than 1e-9 m
+    `solver_failures`
+        number of steps with status "holding"
+    `solve_time_s`
+        median, 99th percentile and maximum of the controller's wall-clock time per step
+    `real_time_factor`
+        simulated time by wall-clock time of the whole run; above 1 is faster than real time
+    `seed`, `versions`
+        what is needed to run it again
+
+    Arguments:
+        recording: one run
+        wall_time: how long the run took [s]; without it the real-time factor is None
+    """
+    error = tip_error(recording.measured_tip, recording.target)
+    simulated = len(recording) * recording.header.dt
+    return {
+        "tip_error_rms_m": _finite(np.sqrt(np.mean(error**2))) if len(error) else None,
+        "tip_error_final_m": _finite(error[-1]) if len(error) else None,
+        "min_clearance_nominal_m": _least(recording.nominal_clearance),
+        "min_clearance_actual_m": _least(recording.actual_clearance),
+        "margin_violations": int(np.count_nonzero(violates_margin(recording))),
+        "solver_failures": recording.status.count(FAILED),
+        "solve_time_s": _times(recording.solve_time),
+        "real_time_factor": _finite(simulated / wall_time) if wall_time else None,
+        "seed": recording.header.seed,
+        "versions": dict(recording.header.versions),
+    }
+
+
+def tip_error(tip: Array, target: Array) -> Array:
+    """Distance (K,) [m] between tips (K, 3) and targets (K, 3)."""
+    return np.linalg.norm(tip - target, axis=-1)
+
+
+def violates_margin(recording: Recording) -> BoolArray:
+    """Whether the nominal body is too close to a wall (K,); an unknown clearance is, too."""
+    return ~(recording.nominal_clearance >= recording.header.margin - MARGIN_TOLERANCE)
+
+
+def _times(solve_time: Array) -> dict[str, float | None]:
+    if not len(solve_time):
+        return {"median": None, "p99": None, "max": None}
+    return {
+        "median": _finite(np.median(solve_time)),
+        "p99": _finite(np.percentile(solve_time, 99)),
+        "max": _finite(np.max(solve_time)),
+    }
+
+
+def _least(values: Array) -> float | None:
+    return _finite(np.min(values)) if len(values) else None
+
+
+def _finite(value: float | np.floating) -> float | None:
+    """A plain number, or None for what JSON cannot hold."""
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,22 @@
+"""Numbers for people: millimetres and milliseconds exist on screen and paper only."""
+
+MM_PER_M = 1e3
+MS_PER_S = 1e3
+PERCENT = 1e2
+
+UNKNOWN = "–"
+
+
+def millimetres(value: float | None, missing: str = UNKNOWN) -> str:
+    """A length [m], to the micrometre."""
+    return missing if value is None else f"{value * MM_PER_M:.3f} mm"
+
+
+def milliseconds(value: float | None, missing: str = UNKNOWN) -> str:
+    """A duration [s], to the microsecond."""
+    return missing if value is None else f"{value * MS_PER_S:.3f} ms"
+
+
+def factor(value: float | None, missing: str = UNKNOWN) -> str:
+    """A ratio, as "12.3 ×"."""
+    return missing if value is None else f"{value:.3g} ×"
