@@ -1,0 +1,97 @@
+"""The safety filter: how much of a planned step is safe, on the exact mesh, also on the way.
+
+A step is accepted if its least slack is at least min(0, least slack where it starts): then
+standing still is always allowed and no step makes a bad state worse (notes B8).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sinuous.arrays import Array
+from sinuous.control.shape import ShapeConstraint
+from sinuous.control.stage import Stage
+from sinuous.control.terms import IncrementLimit
+
+# Two shapes this close count as one [m].
+SAME = 1e-6
+
+# Slack that a recovering body may lose for a moment on its way to a better shape [m].
+WOBBLE = 1e-4
+
+CHECKS = 256  # shapes looked at before the filter gives a step up
+HALVINGS = 10  # of the step before it stands still
+
+
+@dataclass(frozen=True, kw_only=True)
+class SafetyFilter:
+    """Accepts the largest tested share of a step.
+
+    Arguments:
+        shape: constraints on the body
+        limits: limits of the increment
+        dt: [s]
+    """
+
+    shape: Sequence[ShapeConstraint]
+    limits: Sequence[IncrementLimit]
+    dt: float
+
+    def accept(self, start: Stage, goal: Stage) -> tuple[Stage, float]:
+        """The configuration to move to and the share of the step that it is."""
+        share = 1.0
+        floors = [floor(c.slack(start)) for c in self.shape]
+        for _ in range(HALVINGS):
+            end = goal if share == 1.0 else at(start, goal, share)
+            allowed = min(1.0, *(limit.fraction(start, end, self.dt) for limit in self.limits))
+            if allowed < 1.0:
+                share *= allowed * (1.0 - 1e-9)
+                end = at(start, goal, share)
+            if self._safe(start, end, floors):
+                return end, share
+            share *= 0.5
+        return start, 0.0
+
+    def _safe(self, start: Stage, end: Stage, floors: list[float]) -> bool:
+        ends = [np.min(c.slack(end), initial=np.inf) for c in self.shape]
+        if any(slack < least for slack, least in zip(ends, floors, strict=True)):
+            return False
+        return self._way_is_safe(start, end, floors)
+
+    def _way_is_safe(self, start: Stage, end: Stage, floors: list[float]) -> bool:
+        """Whether every shape on the straight way in c keeps its floors.
+
+        Every constraint bounds its slack between two shapes from below; where the bound is
+        not enough the shape in the middle is looked at.
+        """
+        recovering = [least < 0.0 for least in floors]
+        allowed = [least - WOBBLE if bad else least
+                   for least, bad in zip(floors, recovering, strict=True)]  # fmt: skip
+        pending, checks = [(start, end)], 0
+        while pending:
+            a, b = pending.pop()
+            path = float(np.max(np.abs(b.points - a.points)))
+            if path < SAME or all(
+                c.least_between(a, b) >= least for c, least in zip(self.shape, allowed, strict=True)
+            ):
+                continue
+            checks += 1
+            middle = at(a, b, 0.5)
+            slacks = [np.min(c.slack(middle), initial=np.inf) for c in self.shape]
+            if checks > CHECKS or any(
+                slack < least for slack, least in zip(slacks, allowed, strict=True)
+            ):
+                return False
+            pending += [(a, middle), (middle, b)]
+        return True
+
+
+def floor(slack: Array) -> float:
+    """Least slack that a step may end with, given the slack it starts with."""
+    return min(0.0, float(np.min(slack, initial=np.inf)))
+
+
+def at(start: Stage, end: Stage, share: float) -> Stage:
+    """The stage on the straight way from start to end."""
+    return start.moved_to(start.c + share * (end.c - start.c))

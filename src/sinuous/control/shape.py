@@ -1,0 +1,107 @@
+"""Constraints on the body's shape: not linear, kept by cutting planes and the safety filter."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from sinuous.arrays import Array, IntArray
+from sinuous.control.stage import Stage
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cuts:
+    """Linear conditions slack + A delta >= 0 that stand in for a shape constraint.
+
+    Arguments:
+        jacobian: A (m, n)
+        slack: (m,) [m]
+        source: (m,) body point of a wall plane, or segment of a bend limit
+        triangle: (m,) wall triangle, -1 for none
+        normal: (m, 3) direction in which the wall pushes, zero for none
+    """
+
+    jacobian: Array
+    slack: Array
+    source: IntArray
+    triangle: IntArray
+    normal: Array
+
+    def __len__(self) -> int:
+        return len(self.slack)
+
+    def only(self, chosen: Array | IntArray) -> "Cuts":
+        """The chosen rows."""
+        return Cuts(
+            jacobian=self.jacobian[chosen],
+            slack=self.slack[chosen],
+            source=self.source[chosen],
+            triangle=self.triangle[chosen],
+            normal=self.normal[chosen],
+        )
+
+
+class ShapeConstraint(Protocol):
+    """A constraint g(c) >= 0 on each of several parts of the body."""
+
+    def slack(self, stage: Stage) -> Array:
+        """g (k,) exactly [m]; parts that no motion can change are left out."""
+        ...
+
+    def least_between(self, a: Stage, b: Stage) -> float:
+        """A lower bound of the slack on the straight way in c from one stage to another."""
+        ...
+
+    def cuts(self, stage: Stage) -> Cuts:
+        """First rows around the stage."""
+        ...
+
+    def violated(self, stage: Stage, found: Stage) -> Cuts:
+        """Rows around the stage that cut off what is violated at the solution found.
+
+        Where the row itself holds and only the curvature of the kinematics is to blame, its
+        slack is lowered by what linearisation missed (a second-order correction).
+        """
+        ...
+
+    def describe(self, stage: Stage, source: int, triangle: int) -> str:
+        """Name a row for a report."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class BendLimit:
+    """Largest bend of every segment (20), with the curvature from the bend vector.
+
+    |theta| is convex, so its tangent allows too much: the row is kept `reserve` short of the
+    limit and corrected where that is not enough (notes B10).
+    """
+
+    reserve: float = 1e-5  # of cable travel [m]
+
+    def slack(self, stage: Stage) -> Array:
+        return stage.bend_slack
+
+    def least_between(self, a: Stage, b: Stage) -> float:
+        # The slack is concave in c, so it is least at one of the ends.
+        return float(min(np.min(a.bend_slack), np.min(b.bend_slack)))
+
+    def cuts(self, stage: Stage) -> Cuts:
+        A = stage.robot.bend_slack_jacobian(stage.c)
+        return self._rows(A, stage.bend_slack - self.reserve)
+
+    def violated(self, stage: Stage, found: Stage) -> Cuts:
+        cuts = self.cuts(stage)
+        linear = cuts.slack + cuts.jacobian @ (found.c - stage.c)
+        missed = np.maximum(linear - (found.bend_slack - self.reserve), 0.0)
+        corrected = self._rows(cuts.jacobian, cuts.slack - missed)
+        return corrected.only(np.flatnonzero(found.bend_slack < 0.0))
+
+    def describe(self, stage: Stage, source: int, triangle: int) -> str:
+        return f"{stage.robot.bend_names[source]} at its limit"
+
+    def _rows(self, A: Array, slack: Array) -> Cuts:
+        count = len(slack)
+        none = np.full(count, -1, dtype=np.int64)
+        return Cuts(jacobian=A, slack=slack, source=np.arange(count), triangle=none,
+                    normal=np.zeros((count, 3)))  # fmt: skip

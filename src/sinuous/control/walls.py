@@ -1,0 +1,109 @@
+"""Walls as lazy planes: the body stays inside any mesh, with few rows in the QP.
+
+The distance to one triangle is convex, so its tangent plane never promises more room than
+there is.  The distance to a mesh is not: one plane per point misses the other walls (notes
+B8).  So the rows start from each point's nearest triangle, the solution is checked against
+the whole mesh, and the triangles it violates join as planes taken at the old point.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sinuous.arrays import Array, BoolArray, IntArray
+from sinuous.compiled import kernel
+from sinuous.control.shape import Cuts
+from sinuous.control.stage import Stage
+from sinuous.geometry import bvh
+from sinuous.geometry.bvh import ZoneArrays
+
+# Points this close to where they must stop get a plane from the start [m]; all others get
+# one when a solution violates it.
+NEAR = 0.002
+
+# Share by which a body point's path between two checked shapes may exceed its chord; the
+# arc of a turn of 0.5 rad is longer than its chord by 1 %.
+PATH_OVER_CHORD = 1.02
+
+# Points that move less than this per metre of every actuator cannot be steered.
+IMMOVABLE = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Walls:
+    """Clearance of the body (18), for the whole surface and not only at the disks.
+
+    Arguments:
+        required: distance the guarded points keep (S,) [m], from `Robot.required_distance`
+        buffer: what the plan keeps on top, so that the safety filter has room [m]
+    """
+
+    required: Array
+    buffer: float
+
+    def slack(self, stage: Stage) -> Array:
+        movable = np.any(np.abs(stage.jacobian) > IMMOVABLE, axis=(1, 2))
+        return (stage.walls.clearance - self.required)[movable]
+
+    def least_between(self, a: Stage, b: Stage) -> float:
+        # Clearance changes no faster than the point moves, and to be at x on the way from a
+        # to b it moves by |x - a| + |b - x|: half of what both ends have, less half the path.
+        path = PATH_OVER_CHORD * np.linalg.norm(b.points - a.points, axis=1)
+        both = a.walls.clearance + b.walls.clearance - 2.0 * self.required
+        return float(np.min(0.5 * (both - path)))
+
+    def cuts(self, stage: Stage) -> Cuts:
+        near = np.flatnonzero(stage.walls.clearance < self.required + self.buffer + NEAR)
+        return self._planes(stage, near, stage.walls.triangle[near])
+
+    def violated(self, stage: Stage, found: Stage) -> Cuts:
+        beyond = np.flatnonzero(found.walls.clearance < self.required + 0.5 * self.buffer)
+        planes = self._planes(stage, beyond, found.walls.triangle[beyond])
+        linear = planes.slack + planes.jacobian @ (found.c - stage.c)
+        exact = (found.walls.clearance - self.required)[planes.source] - self.buffer
+        missed = np.maximum(linear - exact, 0.0)
+        return Cuts(jacobian=planes.jacobian, slack=planes.slack - missed, source=planes.source,
+                    triangle=planes.triangle, normal=planes.normal)  # fmt: skip
+
+    def describe(self, stage: Stage, source: int, triangle: int) -> str:
+        wall = stage.zone.describe_triangle(triangle)
+        return f"{wall} at {stage.robot.point_name(source)}"
+
+    def _planes(self, stage: Stage, points: IntArray, triangles: IntArray) -> Cuts:
+        near = stage.walls
+        count = len(points)
+        A, slack = np.empty((count, len(stage.c))), np.empty(count)
+        normal = np.empty((count, 3))
+        inside = near.clearance[points] >= 0.0
+        own = triangles == near.triangle[points]
+        fill(stage.zone.arrays, stage.points, stage.jacobian, points, triangles, inside, A, slack,
+             normal)  # fmt: skip
+        # The nearest triangle of a point carries the sign and gradient of the zone itself.
+        normal[own], slack[own] = near.gradient[points[own]], near.clearance[points[own]]
+        A[own] = np.einsum("ki,kin->kn", normal[own], stage.jacobian[points[own]])
+        slack -= self.required[points] + self.buffer
+        rows = Cuts(jacobian=A, slack=slack, source=points, triangle=triangles, normal=normal)
+        # From outside, only the nearest wall shows the way back in.
+        return rows.only(np.flatnonzero((inside | own) & np.any(np.abs(A) > IMMOVABLE, axis=1)))
+
+
+@kernel
+def fill(
+    zone: ZoneArrays,
+    body: Array,
+    jacobian: Array,
+    points: IntArray,
+    triangles: IntArray,
+    inside: BoolArray,
+    A: Array,
+    distance: Array,
+    normal: Array,
+) -> None:
+    """Planes of given triangles seen from given body points: A (m, n), distance and normal."""
+    for k in range(points.size):
+        p = points[k]
+        d, x, y, z = bvh.plane(zone, triangles[k], body[p], inside[k])
+        distance[k] = d
+        normal[k, 0], normal[k, 1], normal[k, 2] = x, y, z
+        for j in range(A.shape[1]):
+            A[k, j] = x * jacobian[p, 0, j] + y * jacobian[p, 1, j] + z * jacobian[p, 2, j]
