@@ -18,7 +18,7 @@ from sinuous.control import qp
 from sinuous.control.plan import Plan, Terms, make_plan
 from sinuous.control.report import Command, Report, Status
 from sinuous.control.safety import SafetyFilter, floor
-from sinuous.control.shape import BendLimit
+from sinuous.control.shape import BendLimit, Contacts
 from sinuous.control.stage import Stage
 from sinuous.control.terms import (
     ActuatorLengths,
@@ -36,7 +36,7 @@ from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.robot import Robot
 
 # The plan keeps this much more than the margin, so that the filter need not cut it [m].
-BUFFER = 1e-4
+RESERVE = 1e-4
 
 # Largest change of an actuator from its predicted length that the linearisation is trusted
 # with [m] (notes B17), at least one step at full speed.
@@ -75,12 +75,12 @@ class MPCState:
     Arguments:
         c: nominal configuration (n,)
         plan: predicted configurations (N, n)
-        forces: wall forces on the body points of the last plan (N, S, 3), for the curvature
+        contacts: walls that each stage of the last plan leaned on
     """
 
     c: Array
     plan: Array
-    forces: Array
+    contacts: tuple[Contacts, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +122,7 @@ class ShapeConstrainedMPC:
     @cached_property
     def walls(self) -> Walls:
         """The constraint that keeps the body off the walls."""
-        return Walls(required=self.robot.required_distance(self.margin), buffer=BUFFER)
+        return Walls(required=self.robot.required_distance(self.margin), reserve=RESERVE)
 
     @cached_property
     def terms(self) -> Terms:
@@ -154,7 +154,7 @@ class ShapeConstrainedMPC:
         return MPCState(
             c=start,
             plan=np.tile(start, (self.horizon, 1)),
-            forces=np.zeros((self.horizon, len(self.robot.radii), 3)),
+            contacts=(Contacts.none(),) * self.horizon,
         )
 
     def step(self, state: MPCState, target: ArrayLike) -> tuple[MPCState, Command]:
@@ -169,7 +169,7 @@ class ShapeConstrainedMPC:
         try:
             predicted = [self.stage(c) for c in state.plan]
             plan = make_plan(
-                self.terms, self._scale, start, predicted, state.forces, goal, self.dt
+                self.terms, self._scale, start, predicted, state.contacts, goal, self.dt
             )
         except np.linalg.LinAlgError as error:
             return self._hold(state, start, f"linear algebra failed: {error}", began)
@@ -186,7 +186,8 @@ class ShapeConstrainedMPC:
         end, share = safety.accept(start, plan.found[0])
         # The whole plan shrinks with the step, so that it stays reachable (notes B17).
         c = start.c + share * (np.array([stage.c for stage in plan.found]) - start.c)
-        after = MPCState(c=end.c, plan=np.concatenate([c[1:], c[-1:]]), forces=plan.forces)
+        contacts = (*plan.contacts[1:], plan.contacts[-1])
+        after = MPCState(c=end.c, plan=np.concatenate([c[1:], c[-1:]]), contacts=contacts)
         report = Report(
             status=self._status(start, end, target),
             solve_time=perf_counter() - began,

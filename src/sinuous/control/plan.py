@@ -14,12 +14,18 @@ import numpy as np
 from sinuous.arrays import Array
 from sinuous.control import qp
 from sinuous.control.report import Active
-from sinuous.control.shape import Cuts, ShapeConstraint
+from sinuous.control.shape import Contacts, Cuts, ShapeConstraint, merged
 from sinuous.control.stage import Stage
 from sinuous.control.terms import Cost, Effort, IncrementLimit, Rows, StateLimit
 
 # Rounds of solving and adding violated planes.
 ROUNDS = 6
+
+# What a metre beyond a wall costs when plans are compared, in units of the strongest push.
+PRICE = 3.0
+
+# Halvings of a change of the plan before it is taken as it is.
+BACKTRACKS = 6
 
 # Multipliers below this share of the largest in the problem are rounding.
 INACTIVE = 1e-6
@@ -42,7 +48,7 @@ class Plan:
 
     Arguments:
         found: predicted stages
-        forces: push of the walls on the body points (N, S, 3) [cost / m]
+        contacts: walls that each stage leans on
         iterations: QPs solved
         planes: rows that stand in for shape constraints in the last QP
         active: what the plan leans on, the strongest first
@@ -50,7 +56,7 @@ class Plan:
     """
 
     found: Sequence[Stage] = ()
-    forces: Array
+    contacts: Sequence[Contacts]
     iterations: int
     planes: int
     active: tuple[Active, ...] = ()
@@ -71,20 +77,20 @@ def make_plan(
     scale: qp.Scale,
     start: Stage,
     predicted: Sequence[Stage],
-    forces: Array,
+    contacts: Sequence[Contacts],
     target: Array,
     dt: float,
 ) -> Plan:
     """Plan from `start` towards target (3,) around the predicted stages 1..N.
 
     Arguments:
-        forces: push of the walls (N, S, 3) in the last plan
+        contacts: walls that the stages of the last plan leaned on
         dt: time between stages [s]
     """
     hard = _hard_rows(terms, start, predicted, dt)
-    problem = _problem(terms, scale, start, predicted, forces, target, hard)
+    problem = _problem(terms, scale, start, predicted, contacts, target, hard)
     placed = [
-        _Placed(stage=i, constraint=constraint, cuts=constraint.cuts(stage))
+        _Placed(stage=i, constraint=constraint, cuts=constraint.cuts(stage, contacts[i]))
         for i, stage in enumerate(predicted)
         for constraint in terms.shape
     ]
@@ -95,7 +101,7 @@ def make_plan(
         solution = qp.solve(problem)
         planes = sum(len(one.cuts) for one in placed)
         if solution.failure:
-            return Plan(forces=forces, iterations=iterations, planes=planes,
+            return Plan(contacts=contacts, iterations=iterations, planes=planes,
                         failure=solution.failure)  # fmt: skip
         delta = scale.delta(solution.y)
         found = [start.moved_to(s.c + d) for s, d in zip(predicted, delta, strict=True)]
@@ -104,9 +110,10 @@ def make_plan(
             break
         placed = placed + pending
     multipliers = problem.multipliers(solution)
+    leaning = _contacts(placed, multipliers[problem.hard :], len(predicted))
     return Plan(
-        found=found,
-        forces=_forces(placed, multipliers[problem.hard :], forces.shape),
+        found=_descend(terms, start, predicted, found, target, leaning),
+        contacts=leaning,
         iterations=iterations,
         planes=planes,
         active=_active(start, hard, placed, multipliers),
@@ -128,15 +135,15 @@ def _problem(
     scale: qp.Scale,
     start: Stage,
     predicted: Sequence[Stage],
-    forces: Array,
+    contacts: Sequence[Contacts],
     target: Array,
     hard: list[tuple[Rows, list[Rows]]],
 ) -> qp.Problem:
     """The QP around the predicted stages, before any cut."""
     hessians, gradients = list[Array](), list[Array]()
-    for stage, push in zip(predicted, forces, strict=True):
+    for stage, leaning in zip(predicted, contacts, strict=True):
         models = [cost.quadratic(stage, target) for cost in terms.costs]
-        pull = -push
+        pull = -leaning.forces(len(stage.points))
         for cost in terms.costs:
             if (force := cost.force(stage, target)) is not None:
                 pull[-1] += force
@@ -165,15 +172,62 @@ def _violated(
     return [one for one in placed if len(one.cuts)]
 
 
-def _forces(placed: Sequence[_Placed], multipliers: Array, shape: tuple[int, ...]) -> Array:
-    """Push of the walls on the body points, from the multipliers of their planes."""
-    forces, row = np.zeros(shape), 0
+def _descend(
+    terms: Terms,
+    start: Stage,
+    predicted: Sequence[Stage],
+    found: Sequence[Stage],
+    target: Array,
+    contacts: Sequence[Contacts],
+) -> Sequence[Stage]:
+    """As much of the change from the predicted to the found stages as lowers the exact cost.
+
+    Without it the plan can hop for ever between two sets of active walls (a limit cycle of
+    millimetres where three walls meet at the tip).
+    """
+    strongest = [float(np.max(np.linalg.norm(c.push, axis=1), initial=0.0)) for c in contacts]
+    price = PRICE * max(strongest)
+    before = _merit(terms, start, predicted, predicted, target, price)
+    share, tried = 1.0, found
+    for _ in range(BACKTRACKS):
+        if _merit(terms, start, predicted, tried, target, price) <= before:
+            break
+        share *= 0.5
+        tried = [p.moved_to(p.c + share * (f.c - p.c)) for p, f in zip(predicted, found, strict=True)]
+    return tried
+
+
+def _merit(
+    terms: Terms,
+    start: Stage,
+    predicted: Sequence[Stage],
+    stages: Sequence[Stage],
+    target: Array,
+    price: float,
+) -> float:
+    """Exact cost of the stages, plus the price of every metre beyond a shape constraint."""
+    total, effort, before = 0.0, terms.effort.hessian(start.robot), start.c
+    for stage, around in zip(stages, predicted, strict=True):
+        total += sum(cost.value(stage, target, around) for cost in terms.costs)
+        total += 0.5 * float((stage.c - before) @ effort @ (stage.c - before))
+        for constraint in terms.shape:
+            total += price * float(np.sum(np.maximum(constraint.reserve - constraint.slack(stage), 0.0)))
+        before = stage.c
+    return total
+
+
+def _contacts(placed: Sequence[_Placed], multipliers: Array, stages: int) -> list[Contacts]:
+    """What each stage leans on, from the multipliers of the planes."""
+    leaning, row = [list[Contacts]() for _ in range(stages)], 0
     for one in placed:
-        push = multipliers[row : row + len(one.cuts), None] * one.cuts.normal
-        walls = np.flatnonzero(one.cuts.triangle >= 0)
-        np.add.at(forces[one.stage], one.cuts.source[walls], push[walls])
+        strength = multipliers[row : row + len(one.cuts)]
+        on = np.flatnonzero((strength > 0.0) & (one.cuts.triangle >= 0))
+        push = strength[on, None] * one.cuts.normal[on]
+        leaning[one.stage].append(
+            Contacts(source=one.cuts.source[on], triangle=one.cuts.triangle[on], push=push)
+        )
         row += len(one.cuts)
-    return forces
+    return [merged(parts) for parts in leaning]
 
 
 def _active(

@@ -1,5 +1,6 @@
 """Constraints on the body's shape: not linear, kept by cutting planes and the safety filter."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -7,6 +8,10 @@ import numpy as np
 
 from sinuous.arrays import Array, IntArray
 from sinuous.control.stage import Stage
+
+
+# A plan may come this much closer than its reserve before it is corrected [m].
+TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,8 +46,51 @@ class Cuts:
         )
 
 
+@dataclass(frozen=True, kw_only=True)
+class Contacts:
+    """Walls that one stage of the last plan leaned on.
+
+    Arguments:
+        source: (m,) body points
+        triangle: (m,) triangles they leaned on
+        push: (m, 3) the walls' push on the points [cost / m]
+    """
+
+    source: IntArray
+    triangle: IntArray
+    push: Array
+
+    @classmethod
+    def none(cls) -> "Contacts":
+        """No contact at all."""
+        nothing = np.zeros(0, dtype=np.int64)
+        return cls(source=nothing, triangle=nothing, push=np.zeros((0, 3)))
+
+    def forces(self, points: int) -> Array:
+        """Push on all body points (S, 3)."""
+        forces = np.zeros((points, 3))
+        np.add.at(forces, self.source, self.push)
+        return forces
+
+
+def merged(parts: Sequence[Contacts]) -> Contacts:
+    """Contacts of one stage from all its rows, each pair of point and triangle once."""
+    source = np.concatenate([part.source for part in parts])
+    triangle = np.concatenate([part.triangle for part in parts])
+    push = np.concatenate([part.push for part in parts])
+    pairs, where = np.unique(np.stack([source, triangle]), axis=1, return_inverse=True)
+    total = np.zeros((pairs.shape[1], 3))
+    np.add.at(total, where.ravel(), push)
+    return Contacts(source=pairs[0], triangle=pairs[1], push=total)
+
+
 class ShapeConstraint(Protocol):
     """A constraint g(c) >= 0 on each of several parts of the body."""
+
+    @property
+    def reserve(self) -> float:
+        """Slack that plans keep, so that the safety filter has room [m]."""
+        ...
 
     def slack(self, stage: Stage) -> Array:
         """g (k,) exactly [m]; parts that no motion can change are left out."""
@@ -52,8 +100,8 @@ class ShapeConstraint(Protocol):
         """A lower bound of the slack on the straight way in c from one stage to another."""
         ...
 
-    def cuts(self, stage: Stage) -> Cuts:
-        """First rows around the stage."""
+    def cuts(self, stage: Stage, contacts: Contacts) -> Cuts:
+        """First rows around the stage, those for the last plan's contacts among them."""
         ...
 
     def violated(self, stage: Stage, found: Stage) -> Cuts:
@@ -86,16 +134,16 @@ class BendLimit:
         # The slack is concave in c, so it is least at one of the ends.
         return float(min(np.min(a.bend_slack), np.min(b.bend_slack)))
 
-    def cuts(self, stage: Stage) -> Cuts:
+    def cuts(self, stage: Stage, contacts: Contacts) -> Cuts:
         A = stage.robot.bend_slack_jacobian(stage.c)
         return self._rows(A, stage.bend_slack - self.reserve)
 
     def violated(self, stage: Stage, found: Stage) -> Cuts:
-        cuts = self.cuts(stage)
+        cuts = self.cuts(stage, Contacts.none())
         linear = cuts.slack + cuts.jacobian @ (found.c - stage.c)
         missed = np.maximum(linear - (found.bend_slack - self.reserve), 0.0)
         corrected = self._rows(cuts.jacobian, cuts.slack - missed)
-        return corrected.only(np.flatnonzero(found.bend_slack < 0.0))
+        return corrected.only(np.flatnonzero(found.bend_slack < self.reserve - TOLERANCE))
 
     def describe(self, stage: Stage, source: int, triangle: int) -> str:
         return f"{stage.robot.bend_names[source]} at its limit"

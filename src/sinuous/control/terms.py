@@ -59,6 +59,10 @@ class Cost(Protocol):
         """Its gradient (3,) by the tip's position, if it has one, for the curvature."""
         ...
 
+    def value(self, stage: Stage, target: Array, around: Stage) -> float:
+        """What it amounts to at a stage near `around`, where the model was taken."""
+        ...
+
 
 class IncrementCost(Protocol):
     """A quadratic cost of the increments v between stages."""
@@ -100,6 +104,9 @@ class TipError:
     def force(self, stage: Stage, target: Array) -> Array:
         return 2.0 * self.weight * (stage.tip - target)
 
+    def value(self, stage: Stage, target: Array, around: Stage) -> float:
+        return self.weight * float(np.sum((stage.tip - target) ** 2))
+
 
 @dataclass(frozen=True, kw_only=True)
 class Posture:
@@ -112,17 +119,25 @@ class Posture:
     weight: float
 
     def quadratic(self, stage: Stage, target: Array) -> Quadratic:
-        metric = actuator_metric(stage.robot)
-        J = np.linalg.solve(metric.T, stage.jacobian[-1].T)  # (n, 3), by actuator metres
-        gain = J.T @ J + NULL_SPACE_DAMPING * np.eye(3)
-        P = np.eye(len(metric)) - J @ np.linalg.solve(gain, J.T)
-        pull = 2.0 * self.weight * metric.T @ P
+        pull = self._projected(stage)
         return Quadratic(
-            hessian=pull @ metric, gradient=pull @ metric @ (stage.c - stage.robot.home)
+            hessian=2.0 * self.weight * pull.T @ pull,
+            gradient=2.0 * self.weight * pull.T @ pull @ (stage.c - stage.robot.home),
         )
 
     def force(self, stage: Stage, target: Array) -> None:
         return None
+
+    def value(self, stage: Stage, target: Array, around: Stage) -> float:
+        pulled = self._projected(around) @ (stage.c - stage.robot.home)
+        return self.weight * float(pulled @ pulled)
+
+    def _projected(self, stage: Stage) -> Array:
+        """P M (n, n), up to the damping."""
+        metric = actuator_metric(stage.robot)
+        J = np.linalg.solve(metric.T, stage.jacobian[-1].T)  # (n, 3), by actuator metres
+        gain = J.T @ J + NULL_SPACE_DAMPING * np.eye(3)
+        return metric - J @ np.linalg.solve(gain, J.T @ metric)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -139,6 +154,9 @@ class PrintedLengths:
 
     def force(self, stage: Stage, target: Array) -> None:
         return None
+
+    def value(self, stage: Stage, target: Array, around: Stage) -> float:
+        return self.weight * float(np.sum(stage.lengths**2))
 
 
 @dataclass(frozen=True, kw_only=True)

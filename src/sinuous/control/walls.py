@@ -12,7 +12,7 @@ import numpy as np
 
 from sinuous.arrays import Array, BoolArray, IntArray
 from sinuous.compiled import kernel
-from sinuous.control.shape import Cuts
+from sinuous.control.shape import TOLERANCE, Contacts, Cuts
 from sinuous.control.stage import Stage
 from sinuous.geometry import bvh
 from sinuous.geometry.bvh import ZoneArrays
@@ -35,11 +35,11 @@ class Walls:
 
     Arguments:
         required: distance the guarded points keep (S,) [m], from `Robot.required_distance`
-        buffer: what the plan keeps on top, so that the safety filter has room [m]
+        reserve: what plans keep on top, so that the safety filter has room [m]
     """
 
     required: Array
-    buffer: float
+    reserve: float
 
     def slack(self, stage: Stage) -> Array:
         movable = np.any(np.abs(stage.jacobian) > IMMOVABLE, axis=(1, 2))
@@ -52,15 +52,19 @@ class Walls:
         both = a.walls.clearance + b.walls.clearance - 2.0 * self.required
         return float(np.min(0.5 * (both - path)))
 
-    def cuts(self, stage: Stage) -> Cuts:
-        near = np.flatnonzero(stage.walls.clearance < self.required + self.buffer + NEAR)
-        return self._planes(stage, near, stage.walls.triangle[near])
+    def cuts(self, stage: Stage, contacts: Contacts) -> Cuts:
+        near = np.flatnonzero(stage.walls.clearance < self.required + self.reserve + NEAR)
+        other = contacts.triangle != stage.walls.triangle[contacts.source]
+        points = np.concatenate([near, contacts.source[other]])
+        return self._planes(
+            stage, points, np.concatenate([stage.walls.triangle[near], contacts.triangle[other]])
+        )
 
     def violated(self, stage: Stage, found: Stage) -> Cuts:
-        beyond = np.flatnonzero(found.walls.clearance < self.required + 0.5 * self.buffer)
+        beyond = np.flatnonzero(found.walls.clearance < self.required + self.reserve - TOLERANCE)
         planes = self._planes(stage, beyond, found.walls.triangle[beyond])
         linear = planes.slack + planes.jacobian @ (found.c - stage.c)
-        exact = (found.walls.clearance - self.required)[planes.source] - self.buffer
+        exact = (found.walls.clearance - self.required)[planes.source] - self.reserve
         missed = np.maximum(linear - exact, 0.0)
         return Cuts(jacobian=planes.jacobian, slack=planes.slack - missed, source=planes.source,
                     triangle=planes.triangle, normal=planes.normal)  # fmt: skip
@@ -81,7 +85,7 @@ class Walls:
         # The nearest triangle of a point carries the sign and gradient of the zone itself.
         normal[own], slack[own] = near.gradient[points[own]], near.clearance[points[own]]
         A[own] = np.einsum("ki,kin->kn", normal[own], stage.jacobian[points[own]])
-        slack -= self.required[points] + self.buffer
+        slack -= self.required[points] + self.reserve
         rows = Cuts(jacobian=A, slack=slack, source=points, triangle=triangles, normal=normal)
         # From outside, only the nearest wall shows the way back in.
         return rows.only(np.flatnonzero((inside | own) & np.any(np.abs(A) > IMMOVABLE, axis=1)))

@@ -1,0 +1,130 @@
+"""Planar caps that close the open ends of a mesh."""
+
+from dataclasses import replace
+
+import mapbox_earcut
+import numpy as np
+
+from sinuous.arrays import Array, IntArray
+from sinuous.geometry.draft import Draft, Step, fatal, repaired
+from sinuous.geometry.normals import unit
+from sinuous.geometry.report import Finding, places
+from sinuous.geometry.surface import Part
+from sinuous.geometry.topology import edges_of, half_edges, loops
+
+PLANAR = 1e-4  # deviation from a plane, as a share of the loop's size, that is measuring noise
+
+
+def boundary_loops(draft: Draft) -> list[IntArray]:
+    """Vertices along every open end, in the direction that a cap winds outward."""
+    edges, count = edges_of(draft.faces)
+    return loops(half_edges(draft.faces)[count[edges] == 1][:, ::-1])
+
+
+def size_of(points: Array) -> float:
+    """Diameter of the ball around the mean of points [m] (N, 3) that holds them all."""
+    return 2.0 * float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
+
+
+def plane_of(outline: Array) -> tuple[Array, Array, float]:
+    """Mean plane of a closed outline (N, 3).
+
+    Returns:
+        centre (3,), unit normal (3,) for which the outline runs anticlockwise, and the largest
+        distance from the plane [m]
+    """
+    centre = outline.mean(axis=0)
+    arm = outline - centre
+    normal = np.cross(arm, np.roll(arm, -1, axis=0)).sum(axis=0)
+    normal = normal / max(float(np.linalg.norm(normal)), np.finfo(float).tiny)
+    return centre, normal, float(np.abs(arm @ normal).max())
+
+
+def open_findings(draft: Draft) -> list[Finding]:
+    """Say how many open ends a mesh has and where."""
+    ends = boundary_loops(draft)
+    if not ends:
+        return []
+    outlines = [draft.vertices[e] for e in ends]
+    sizes = ", ".join(f"{1e3 * size_of(o):.3g}" for o in outlines[:3])
+    planar = all(plane_of(o)[2] <= PLANAR * size_of(o) for o in outlines)
+    remedy = (
+        "Set cap = true to close the open ends by planar caps."
+        if planar
+        else "Close it in a mesh editor; caps are only made for planar ends."
+    )
+    what = f"an open mesh: {len(ends)} open ends, {sizes} mm across"
+    return [fatal(what, "a closed mesh", remedy, places([o.mean(axis=0) for o in outlines]))]
+
+
+def _fill(flat: Array) -> list[tuple[int, int, int]]:
+    """Triangulate a polygon (N, 2), using every vertex although earcut skips those on a line."""
+    n = len(flat)
+    cut = mapbox_earcut.triangulate_float64(flat, np.array([n], dtype=np.uint32))
+    todo = [(int(a), int(b), int(c)) for a, b, c in cut.reshape(-1, 3)]
+    directed = {e for a, b, c in todo for e in ((a, b), (b, c), (c, a))}
+    if todo and sum((b - a) % n == 1 for a, b in directed) < sum(
+        (a - b) % n == 1 for a, b in directed
+    ):
+        todo = [(a, c, b) for a, b, c in todo]
+        directed = {(b, a) for a, b in directed}
+    done: list[tuple[int, int, int]] = []
+    while todo:
+        triangle = todo.pop()
+        for k in range(3):
+            a, b, c = triangle[k], triangle[(k + 1) % 3], triangle[(k + 2) % 3]
+            if (b - a) % n != 1 and (b, a) not in directed:  # an outline edge with skipped vertices
+                middle = (a + 1) % n
+                todo += [(a, middle, c), (middle, b, c)]
+                directed |= {(middle, b), (c, middle), (middle, c)}
+                break
+        else:
+            done.append(triangle)
+    return done
+
+
+def _nested(outlines: list[Array]) -> list[Finding]:
+    """Find ends inside one another in one plane: a cap on each would overlap."""
+    planes = [(*plane_of(o), size_of(o)) for o in outlines]
+    for i, (centre, normal, _, size) in enumerate(planes):
+        for other, facing, _, width in planes[:i]:
+            apart = other - centre
+            near = np.linalg.norm(apart) < max(size, width) / 2.0
+            flat = abs(float(apart @ normal)) <= PLANAR * max(size, width)
+            if near and flat and float(normal @ facing) < 0.0:
+                what, remedy = "a ring-shaped open end", "Close it in a mesh editor."
+                return [fatal(what, "open ends with one outline each", remedy, places([centre]))]
+    return []
+
+
+def add_caps(draft: Draft) -> Step:
+    """Close every planar open end; the mesh must be wound consistently."""
+    faces: list[IntArray] = []
+    ends = boundary_loops(draft)
+    findings = _nested([draft.vertices[loop] for loop in ends])
+    if findings:
+        return draft, findings
+    for loop in ends:
+        outline = draft.vertices[loop]
+        centre, normal, off = plane_of(outline)
+        if off > PLANAR * size_of(outline):
+            what = f"an open end that is {1e3 * off:.3g} mm from planar"
+            remedy = "Cut the end by a plane in a mesh editor, then cap it."
+            return draft, [fatal(what, "a planar open end", remedy, places([centre]))]
+        across: Array = outline[np.argmax(np.linalg.norm(outline - centre, axis=1))] - centre
+        u = unit(across - (across @ normal) * normal)
+        flat = (outline - centre) @ np.stack([u, np.cross(normal, u)], axis=1)
+        faces.append(loop[np.array(_fill(flat), dtype=np.int64).reshape(-1, 3)])
+        what = f"an open end {1e3 * size_of(outline):.3g} mm across"
+        findings.append(repaired(what, "It was closed by a planar cap.", places([centre])))
+    count = sum(len(f) for f in faces)
+    capped = replace(
+        draft,
+        faces=np.concatenate([draft.faces, *faces]),
+        part=np.concatenate([draft.part, np.full(count, int(Part.CAP))]),
+        source=np.concatenate([draft.source, np.arange(count)]),
+    )
+    if not capped.closed:
+        what, remedy = "open ends with crossing outlines", "Close them in a mesh editor."
+        return draft, [fatal(what, "open ends with simple outlines", remedy)]
+    return capped, findings
