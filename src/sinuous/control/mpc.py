@@ -15,11 +15,12 @@ import numpy as np
 
 from sinuous.arrays import Array, ArrayLike
 from sinuous.control import qp
-from sinuous.control.plan import Plan, Terms, make_plan
+from sinuous.control.plan import Plan, make_plan
+from sinuous.control.problem import Terms
 from sinuous.control.report import Command, Report, Status
 from sinuous.control.safety import SafetyFilter, floor
 from sinuous.control.shape import BendLimit, Contacts
-from sinuous.control.stage import Stage
+from sinuous.control.stage import Stage, actuator_metric
 from sinuous.control.terms import (
     ActuatorLengths,
     ActuatorRates,
@@ -29,7 +30,6 @@ from sinuous.control.terms import (
     PrintedLengths,
     TipError,
     TipSpeed,
-    actuator_metric,
 )
 from sinuous.control.walls import Walls
 from sinuous.geometry.safe_zone import SafeZone
@@ -46,6 +46,7 @@ TRUST = 5e-4
 # has nowhere to go [m].
 ARRIVED = 1e-5
 STILL = 1e-6
+
 
 @dataclass(frozen=True, kw_only=True)
 class Costs:
@@ -122,7 +123,9 @@ class ShapeConstrainedMPC:
     @cached_property
     def walls(self) -> Walls:
         """The constraint that keeps the body off the walls."""
-        return Walls(required=self.robot.required_distance(self.margin), reserve=RESERVE)
+        movable = np.any(self.robot.points_jacobian(self.robot.home) != 0.0, axis=(1, 2))
+        required = self.robot.required_distance(self.margin)
+        return Walls(required=required, movable=movable, reserve=RESERVE)
 
     @cached_property
     def terms(self) -> Terms:
@@ -141,7 +144,7 @@ class ShapeConstrainedMPC:
     def _scale(self) -> qp.Scale:
         return qp.Scale(
             step=float(np.max(self.robot.rate_limits)) * self.dt,
-            inverse=np.linalg.inv(actuator_metric(self.robot)),
+            inverse=np.asarray(np.linalg.inv(actuator_metric(self.robot)), dtype=np.float64),
         )
 
     def stage(self, c: Array) -> Stage:

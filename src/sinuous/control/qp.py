@@ -42,19 +42,23 @@ class Problem:
     hard: int  # the first rows must hold; the others may be violated at the price of the penalty
     penalty: float
 
-    def with_cuts(self, scale: "Scale", stage: int, cuts: Cuts) -> "Problem":
-        """The same problem with soft rows cut.slack + A delta >= 0 for one stage."""
-        rows = np.zeros((len(cuts), len(self.f)))
-        n = len(scale.inverse)
-        scaled = scale.rows(cuts.jacobian)
-        norm = np.linalg.norm(scaled, axis=1)  # of order one per actuator step
-        rows[:, stage * n : (stage + 1) * n] = scaled / norm[:, None]
+    def with_cuts(self, scale: "Scale", placed: Sequence[tuple[int, Cuts]]) -> "Problem":
+        """The same problem with soft rows cut.slack + A delta >= 0 for some stages."""
+        n, count = len(scale.inverse), sum(len(cuts) for _, cuts in placed)
+        A, lower, norms, row = np.zeros((count, len(self.f))), np.empty(count), np.empty(count), 0
+        for stage, cuts in placed:
+            rows = slice(row, row + len(cuts))
+            scaled = scale.rows(cuts.jacobian)
+            norms[rows] = np.linalg.norm(scaled, axis=1)  # of order one per actuator step
+            A[rows, stage * n : (stage + 1) * n] = scaled / norms[rows, None]
+            lower[rows] = -cuts.slack / (scale.step * norms[rows])
+            row = rows.stop
         return replace(
             self,
-            A=np.concatenate([self.A, rows]),
-            lower=np.concatenate([self.lower, -cuts.slack / (scale.step * norm)]),
-            upper=np.concatenate([self.upper, np.full(len(cuts), np.inf)]),
-            value=np.concatenate([self.value, self.size / (scale.step * norm)]),
+            A=np.concatenate([self.A, A]),
+            lower=np.concatenate([self.lower, lower]),
+            upper=np.concatenate([self.upper, np.full(count, np.inf)]),
+            value=np.concatenate([self.value, self.size / (scale.step * norms)]),
         )
 
     def multipliers(self, solution: "Solution") -> Array:
@@ -69,6 +73,11 @@ class Solution:
     y: Array
     multipliers: Array
     failure: str
+
+    @classmethod
+    def nothing(cls) -> "Solution":
+        """What is known before anything was solved."""
+        return cls(y=np.zeros(0), multipliers=np.zeros(0), failure="nothing was solved")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,6 @@ import numpy as np
 from sinuous.arrays import Array, IntArray
 from sinuous.control.stage import Stage
 
-
 # A plan may come this much closer than its reserve before it is corrected [m].
 TOLERANCE = 1e-6
 
@@ -35,7 +34,7 @@ class Cuts:
     def __len__(self) -> int:
         return len(self.slack)
 
-    def only(self, chosen: Array | IntArray) -> "Cuts":
+    def only(self, chosen: IntArray) -> "Cuts":
         """The chosen rows."""
         return Cuts(
             jacobian=self.jacobian[chosen],

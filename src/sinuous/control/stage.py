@@ -1,12 +1,18 @@
 """One configuration and all that the terms of a controller may ask about it."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Self
+
+import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.geometry.safe_zone import Nearest, SafeZone
 from sinuous.robots.robot import Robot
+
+# Damping of the tip's null space [m^2 of tip per m^2 of actuator]: far below the smallest
+# squared gain at which a direction of the tip is still worth steering (1 %).
+NULL_SPACE_DAMPING = 1e-5
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,6 +43,14 @@ class Stage:
         return self.zone.nearest(self.points)
 
     @cached_property
+    def tip_null_space(self) -> Array:
+        """P M (n, n): from coordinates to actuator metres, less what moves the tip."""
+        metric = actuator_metric(self.robot)
+        J = np.linalg.solve(metric.T, self.jacobian[-1].T)  # (n, 3), by actuator metres
+        gain = J.T @ J + NULL_SPACE_DAMPING * np.eye(3)
+        return metric - J @ np.linalg.solve(gain, J.T @ metric)
+
+    @cached_property
     def lengths(self) -> Array:
         """Actuator lengths (P,) [m]."""
         return self.robot.lengths(self.c)
@@ -50,3 +64,10 @@ class Stage:
     def tip(self) -> Array:
         """Tip position (3,) [m]: the last of the body points."""
         return self.points[-1]
+
+
+@lru_cache(maxsize=32)
+def actuator_metric(robot: Robot) -> Array:
+    """M (n, n) with |M v| = |change of the actuator lengths|: coordinates in actuator metres."""
+    A = robot.lengths_jacobian(robot.home)
+    return np.asarray(np.linalg.cholesky(A.T @ A).T, dtype=np.float64)

@@ -6,22 +6,17 @@ delta = c - c_bar of one stage of the horizon, or the increment v from one stage
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
 
 from sinuous.arrays import Array
-from sinuous.control.stage import Stage
+from sinuous.control.stage import Stage, actuator_metric
 from sinuous.robots.robot import Robot
 
 # Step rate at which paper B states its input weight [Hz]. The weight is applied to the
 # displacement per step, so it means the same at every rate (notes B6).
 PRINTED_RATE = 30.0
-
-# Damping of the tip's null space [m^2 of tip per m^2 of actuator]: far below the smallest
-# squared gain at which a direction of the tip is still worth steering (1 %).
-NULL_SPACE_DAMPING = 1e-5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +34,7 @@ class Rows:
     Arguments:
         jacobian: A (m, n)
         lower, upper: (m,), infinite where there is no condition
-        names: what each row means, for reports
+        names: what each row means, for reports; empty for what is no limit of the robot
     """
 
     jacobian: Array
@@ -119,7 +114,7 @@ class Posture:
     weight: float
 
     def quadratic(self, stage: Stage, target: Array) -> Quadratic:
-        pull = self._projected(stage)
+        pull = stage.tip_null_space
         return Quadratic(
             hessian=2.0 * self.weight * pull.T @ pull,
             gradient=2.0 * self.weight * pull.T @ pull @ (stage.c - stage.robot.home),
@@ -129,15 +124,8 @@ class Posture:
         return None
 
     def value(self, stage: Stage, target: Array, around: Stage) -> float:
-        pulled = self._projected(around) @ (stage.c - stage.robot.home)
+        pulled = around.tip_null_space @ (stage.c - stage.robot.home)
         return self.weight * float(pulled @ pulled)
-
-    def _projected(self, stage: Stage) -> Array:
-        """P M (n, n), up to the damping."""
-        metric = actuator_metric(stage.robot)
-        J = np.linalg.solve(metric.T, stage.jacobian[-1].T)  # (n, 3), by actuator metres
-        gain = J.T @ J + NULL_SPACE_DAMPING * np.eye(3)
-        return metric - J @ np.linalg.solve(gain, J.T @ metric)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,11 +173,15 @@ class ActuatorLengths:
         # A prediction that is out of limits by rounding must not make the problem infeasible.
         lower = np.minimum(limits[:, 0] - stage.lengths, 0.0)
         upper = np.maximum(limits[:, 1] - stage.lengths, 0.0)
+        limited = (lower > -self.trust) | (upper < self.trust)
         return Rows(
             jacobian=stage.robot.lengths_jacobian(stage.c),
             lower=np.maximum(lower, -self.trust),
             upper=np.minimum(upper, self.trust),
-            names=tuple(f"{name} at its length limit" for name in stage.robot.actuator_names),
+            names=tuple(
+                f"{name} at its length limit" if near else ""
+                for name, near in zip(stage.robot.actuator_names, limited, strict=True)
+            ),
         )
 
 
@@ -231,10 +223,3 @@ class TipSpeed:
     def fraction(self, start: Stage, end: Stage, dt: float) -> float:
         moved = float(np.linalg.norm(end.tip - start.tip))
         return min(1.0, self.limit * dt / moved) if moved > 0.0 else 1.0
-
-
-@lru_cache(maxsize=32)
-def actuator_metric(robot: Robot) -> Array:
-    """M (n, n) with |M v| = |change of the actuator lengths|: coordinates in actuator metres."""
-    A = robot.lengths_jacobian(robot.home)
-    return np.linalg.cholesky(A.T @ A).T

@@ -25,7 +25,7 @@ NEAR = 0.002
 # arc of a turn of 0.5 rad is longer than its chord by 1 %.
 PATH_OVER_CHORD = 1.02
 
-# Points that move less than this per metre of every actuator cannot be steered.
+# Walls that yield less than this per unit of every coordinate cannot be steered away from.
 IMMOVABLE = 1e-6
 
 
@@ -35,25 +35,27 @@ class Walls:
 
     Arguments:
         required: distance the guarded points keep (S,) [m], from `Robot.required_distance`
+        movable: which of them any motion can move (S,); a fixed base is not
         reserve: what plans keep on top, so that the safety filter has room [m]
     """
 
     required: Array
+    movable: BoolArray
     reserve: float
 
     def slack(self, stage: Stage) -> Array:
-        movable = np.any(np.abs(stage.jacobian) > IMMOVABLE, axis=(1, 2))
-        return (stage.walls.clearance - self.required)[movable]
+        return (stage.walls.clearance - self.required)[self.movable]
 
     def least_between(self, a: Stage, b: Stage) -> float:
         # Clearance changes no faster than the point moves, and to be at x on the way from a
         # to b it moves by |x - a| + |b - x|: half of what both ends have, less half the path.
         path = PATH_OVER_CHORD * np.linalg.norm(b.points - a.points, axis=1)
         both = a.walls.clearance + b.walls.clearance - 2.0 * self.required
-        return float(np.min(0.5 * (both - path)))
+        return 0.5 * float(np.min((both - path)[self.movable], initial=np.inf))
 
     def cuts(self, stage: Stage, contacts: Contacts) -> Cuts:
-        near = np.flatnonzero(stage.walls.clearance < self.required + self.reserve + NEAR)
+        limit = self.required + self.reserve + NEAR
+        near = np.flatnonzero(self.movable & (stage.walls.clearance < limit))
         other = contacts.triangle != stage.walls.triangle[contacts.source]
         points = np.concatenate([near, contacts.source[other]])
         return self._planes(
@@ -61,7 +63,8 @@ class Walls:
         )
 
     def violated(self, stage: Stage, found: Stage) -> Cuts:
-        beyond = np.flatnonzero(found.walls.clearance < self.required + self.reserve - TOLERANCE)
+        limit = self.required + self.reserve - TOLERANCE
+        beyond = np.flatnonzero(self.movable & (found.walls.clearance < limit))
         planes = self._planes(stage, beyond, found.walls.triangle[beyond])
         linear = planes.slack + planes.jacobian @ (found.c - stage.c)
         exact = (found.walls.clearance - self.required)[planes.source] - self.reserve

@@ -261,9 +261,15 @@ class PccRobot:
     def _sections(self) -> list[_Section]:
         sections = list[_Section]()
 
-        def add(longest: float, radius: float, disks: int, curvature: float = 0.0,
-                theta: int = -1, gamma: int = -1,
-                direction: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> None:
+        def add(
+            longest: float,
+            radius: float,
+            disks: int,
+            curvature: float = 0.0,
+            theta: int = -1,
+            gamma: int = -1,
+            direction: tuple[float, float, float] = (0.0, 0.0, 1.0),
+        ) -> None:
             pieces = disks * max(1, ceil(longest / disks / self.spacing - 1e-9))
             sections.append(_Section(theta=theta, gamma=gamma, longest=longest, radius=radius,
                                      disks=disks, pieces=pieces, curvature=curvature,

@@ -59,11 +59,11 @@ def section_bend(chain: Chain, m: int, c: Array) -> tuple[float, float, float]:
     """Bend vector [rad] and length [m] of section m."""
     theta_x, theta_y = 0.0, 0.0
     if chain.theta_column[m] >= 0:
-        theta_x = c[chain.theta_column[m]]
-        theta_y = c[chain.theta_column[m] + 1]
-    gamma = chain.fixed_length[m]
+        theta_x = float(c[chain.theta_column[m]])
+        theta_y = float(c[chain.theta_column[m] + 1])
+    gamma = float(chain.fixed_length[m])
     if chain.gamma_column[m] >= 0:
-        gamma = c[chain.gamma_column[m]]
+        gamma = float(c[chain.gamma_column[m]])
     return theta_x, theta_y, gamma
 
 
