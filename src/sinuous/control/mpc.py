@@ -36,7 +36,7 @@ from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.robot import Robot
 
 # The plan keeps this much more than the margin, so that the filter need not cut it [m].
-RESERVE = 1e-4
+RESERVE = 5e-5
 
 # Largest change of an actuator from its predicted length that the linearisation is trusted
 # with [m] (notes B17), at least one step at full speed.

@@ -21,7 +21,8 @@ SAME = 1e-6
 WOBBLE = 1e-4
 
 CHECKS = 256  # shapes looked at before the filter gives a step up
-HALVINGS = 10  # of the step before it stands still
+ATTEMPTS = 16  # at shortening a step before the robot stands still
+ROUNDING = 1e-9  # share by which a step is shortened further than its limits ask
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,16 +42,16 @@ class SafetyFilter:
     def accept(self, start: Stage, goal: Stage) -> tuple[Stage, float]:
         """The configuration to move to and the share of the step that it is."""
         share = 1.0
-        floors = [floor(c.slack(start)) for c in self.shape]
-        for _ in range(HALVINGS):
+        floors = [floor(constraint.slack(start)) for constraint in self.shape]
+        for _ in range(ATTEMPTS):
             end = goal if share == 1.0 else at(start, goal, share)
-            allowed = min(1.0, *(limit.fraction(start, end, self.dt) for limit in self.limits))
+            allowed = min(limit.fraction(start, end, self.dt) for limit in self.limits)
             if allowed < 1.0:
-                share *= allowed * (1.0 - 1e-9)
-                end = at(start, goal, share)
-            if self._safe(start, end, floors):
+                share *= allowed * (1.0 - ROUNDING)
+            elif self._safe(start, end, floors):
                 return end, share
-            share *= 0.5
+            else:
+                share *= 0.5
         return start, 0.0
 
     def _safe(self, start: Stage, end: Stage, floors: list[float]) -> bool:

@@ -1,0 +1,154 @@
+"""What good files hold, as rows of a table; bad ones raise `InputError`."""
+
+from pathlib import Path
+
+import numpy as np
+
+from sinuous.arrays import Array
+from sinuous.cli.table import Rows
+from sinuous.files import read_path_csv, read_toml
+from sinuous.geometry.mesh import check_mesh
+from sinuous.recording import read
+from sinuous.robots.pcc import PccRobot, Segment
+from sinuous.robots.robot_file import load_robot
+from sinuous.scenario import load_scenario
+from sinuous.scenario.start import check_start, movable
+from sinuous.summary import summarise
+from sinuous.view.summary_table import summary_rows
+from sinuous.view.units import MM_PER_M, MS_PER_S
+
+
+def millimetres(values: Array) -> str:
+    """Lengths [m] as millimetres."""
+    return ", ".join(f"{value * MM_PER_M:.4g}" for value in np.ravel(values)) + " mm"
+
+
+def robot(path: Path) -> Rows:
+    """Rows about a robot file, for each of its sets of limits."""
+    sets = read_toml(path).get("limits")
+    names = [str(name) for name in sets] if isinstance(sets, dict) else ["simulation"]
+    loaded = {name: load_robot(path, limits=name) for name in names}
+    first = loaded[names[0]]
+    return [
+        ("name", first.name),
+        ("segments", "; ".join(_segments(first))),
+        ("insertion stage", _insertion(first)),
+        ("tool", "none" if first.tool is None else millimetres(np.array(first.tool.offset))),
+        ("coordinates", str(len(first.coordinate_names))),
+        ("actuators", str(len(first.actuator_names))),
+        ("cable lengths", f"counted in the {first.convention.value}"),
+        ("tip at home", millimetres(first.tip(first.home))),
+        *((f"speeds, {name}", _speeds(each)) for name, each in loaded.items()),
+        *((f"lengths, {name}", _lengths(each)) for name, each in loaded.items()),
+    ]
+
+
+def _segments(robot: PccRobot) -> list[str]:
+    return [f"{number}: {_segment(segment)}" for number, segment in enumerate(robot.segments, 1)]
+
+
+def _segment(segment: Segment) -> str:
+    length = " to ".join(f"{x * MM_PER_M:g}" for x in sorted({*segment.length}))
+    parts = [
+        f"{length} mm",
+        f"{len(segment.cable_angles)} cables",
+        f"{segment.disks} disks",
+        f"body radius {segment.body_radius * MM_PER_M:g} mm",
+    ]
+    return ", ".join(parts)
+
+
+def _insertion(robot: PccRobot) -> str:
+    if robot.insertion is None:
+        return "none"
+    low, high = robot.insertion.travel
+    return f"{low * MM_PER_M:g} to {high * MM_PER_M:g} mm"
+
+
+def _speeds(robot: PccRobot) -> str:
+    parts = {"cable": robot.speed.cable, "backbone": robot.speed.backbone}
+    parts["insertion"] = robot.speed.insertion
+    return ", ".join(f"{name} {x * MM_PER_M:g} mm/s" for name, x in parts.items() if x > 0.0)
+
+
+def _lengths(robot: PccRobot) -> str:
+    low, high = robot.length_limits[:, 0], robot.length_limits[:, 1]
+    return f"{low.min() * MM_PER_M:g} to {high.max() * MM_PER_M:g} mm over all actuators"
+
+
+def mesh(path: Path, unit: str) -> Rows:
+    """Rows about a mesh file."""
+    report = check_mesh(path, unit=unit)
+    report.raise_if_unusable()
+    findings = [("finding", str(finding)) for finding in report.findings]
+    return [
+        ("triangles", str(report.triangles)),
+        ("vertices", str(report.vertices)),
+        ("extents", millimetres(np.array(report.extents))),
+        ("from", millimetres(np.array(report.lower))),
+        ("to", millimetres(np.array(report.upper))),
+        ("watertight", "yes"),
+        *(findings or [("findings", "none")]),
+    ]
+
+
+def scenario(path: Path, overrides: list[str]) -> Rows:
+    """Rows about a scenario, its robot in its zone and its start."""
+    found = load_scenario(path, set=overrides)
+    check_start(found)
+    mpc = found.mpc
+    start = mpc.stage(found.first_configuration)
+    room = (start.walls.clearance - found.robot.radii)[movable(start)]
+    targets = np.array([leg.at(leg.moving) for leg in found.path])
+    steps = sum(leg.steps(mpc.dt) for leg in found.path)
+    return [
+        ("name", found.name),
+        ("robot", f"{found.robot.name}, base at {millimetres(start.points[0])}"),
+        ("zone", _zone(len(found.zone.triangles), len(found.zone.surfaces))),
+        ("margin", f"{mpc.margin * MM_PER_M:g} mm"),
+        ("least clearance at the start", _room(float(np.min(room, initial=np.inf)))),
+        ("controller", f"horizon {mpc.horizon}, every {mpc.dt * MS_PER_S:.4g} ms"),
+        ("path", f"{len(found.path)} legs, at most {steps} steps"),
+        ("targets", "; ".join(millimetres(target) for target in targets)),
+        ("clearance of the targets", "; ".join(map(_room, found.zone.clearance(targets)))),
+        ("disturbance", "none" if found.disturbance is None else str(found.disturbance)),
+        ("seed", str(found.seed)),
+    ]
+
+
+def _zone(triangles: int, surfaces: int) -> str:
+    if not surfaces:
+        return "none: free space"
+    return f"{triangles} triangles" + (f", {surfaces - 1} keep-outs" if surfaces > 1 else "")
+
+
+def _room(clearance: float) -> str:
+    return f"{clearance * MM_PER_M:.2f} mm" if np.isfinite(clearance) else "no wall"
+
+
+def path(file: Path) -> Rows:
+    """Rows about the CSV file of a path."""
+    times, points = read_path_csv(file)
+    step = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    speed = np.max(step / np.diff(times), initial=0.0)
+    return [
+        ("points", str(len(times))),
+        ("time", f"{times[0]:g} to {times[-1]:g} s"),
+        ("length", millimetres(np.array([step.sum()]))),
+        ("fastest", f"{speed * MM_PER_M:.4g} mm/s"),
+        ("from", millimetres(points.min(axis=0))),
+        ("to", millimetres(points.max(axis=0))),
+    ]
+
+
+def recording(file: Path) -> Rows:
+    """Rows about a recording."""
+    found = read(file)
+    header = found.header
+    return [
+        ("name", header.name),
+        ("steps", f"{len(found)}, every {header.dt * MS_PER_S:.4g} ms"),
+        ("complete", "yes" if found.complete else "no: it was cut off; what is there is good"),
+        ("margin", f"{header.margin * MM_PER_M:g} mm"),
+        *summary_rows(summarise(found)),
+    ]

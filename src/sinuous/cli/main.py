@@ -1,0 +1,54 @@
+"""Parse, call, and turn what happened into an exit code.
+
+Nothing that computes is imported before it is needed, so that help and mistakes are instant.
+"""
+
+import sys
+from collections.abc import Sequence
+
+import tyro
+
+from sinuous.cli.arguments import Check, Compare, Run
+from sinuous.cli.codes import BAD_INPUT, GOOD, INTERRUPTED
+from sinuous.errors import InputError
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command line and return its exit code.
+
+    Arguments:
+        argv: the arguments without the program's name, None for those of the process
+    """
+    try:
+        verb = tyro.cli(
+            Run | Check | Compare,  # pyright: ignore[reportArgumentType]
+            prog="sinuous",
+            description="Steer tendon-driven continuum robots inside a mesh without touching it.",
+            args=None if argv is None else list(argv),
+        )
+    except SystemExit as stop:  # help, or a mistake that tyro has explained
+        return stop.code if isinstance(stop.code, int) else GOOD
+    try:
+        return _call(verb)
+    except InputError as error:
+        print(f"sinuous: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("sinuous: interrupted", file=sys.stderr)
+        return INTERRUPTED
+
+
+def _call(verb: Run | Check | Compare) -> int:
+    match verb:
+        case Run():
+            from sinuous.cli.run import run
+
+            return run(verb)
+        case Check():
+            from sinuous.cli.check import check
+
+            return check(verb)
+        case Compare():
+            from sinuous.cli.compare import compare
+
+            return compare(verb)

@@ -1,0 +1,81 @@
+"""A scenario as a value: everything a session needs, built and in SI."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from sinuous.arrays import Array
+from sinuous.control.mpc import ShapeConstrainedMPC
+from sinuous.geometry.safe_zone import SafeZone
+from sinuous.plants.kinematic import Disturbance, KinematicPlant
+from sinuous.plants.plant import Plant
+from sinuous.robots.robot import Robot
+from sinuous.scenario.path import Leg
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Scenario:
+    """One task for one robot.
+
+    Arguments:
+        name: what to call it
+        mpc: the controller; robot, zone, margin and time step are its own
+        path: where the tip shall go, leg by leg
+        start: configuration (n,), by default the robot's home
+        seed: of everything random
+        recover: whether the start may be closer to a wall than the margin, or beyond it
+        disturbance: of the plant, None for an exact one
+        plant: makes the plant that stands in for the robot, None for a `KinematicPlant`
+        file: where the scenario comes from, for messages and to run it again
+        text: the scenario as TOML, every path in it absolute; empty if it comes from Python
+        robot_text: the robot file's TOML; empty if the robot comes from Python
+
+    Raises:
+        ValueError: if there is no leg, or the start does not fit the robot
+    """
+
+    name: str
+    mpc: ShapeConstrainedMPC
+    path: tuple[Leg, ...]
+    start: Array | None = None
+    seed: int = 0
+    recover: bool = False
+    disturbance: Disturbance | None = None
+    plant: Callable[[], Plant] | None = None
+    file: str = "scenario"
+    text: str = ""
+    robot_text: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.path:
+            raise ValueError("a scenario needs a path of one leg or more")
+        start = self.first_configuration
+        if start.shape != self.robot.home.shape or not np.all(np.isfinite(start)):
+            raise ValueError(f"start must be {len(self.robot.home)} finite numbers")
+
+    @property
+    def robot(self) -> Robot:
+        """The robot, its base where it stands."""
+        return self.mpc.robot
+
+    @property
+    def zone(self) -> SafeZone:
+        """The room the robot may use."""
+        return self.mpc.zone
+
+    @property
+    def first_configuration(self) -> Array:
+        """Configuration (n,) to start from."""
+        return self.robot.home if self.start is None else np.asarray(self.start, dtype=np.float64)
+
+    def new_plant(self) -> Plant:
+        """A plant at the start, its random numbers from the seed."""
+        if self.plant is not None:
+            return self.plant()
+        return KinematicPlant(
+            self.robot,
+            seed=self.seed,
+            disturbance=self.disturbance,
+            start=self.first_configuration,
+        )

@@ -1,0 +1,120 @@
+"""The loop on simulated time: target, controller, plant, sample."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from sinuous.arrays import Array, BoolArray
+from sinuous.control.report import Command, Status
+from sinuous.plants.plant import Measurement
+from sinuous.recording import Sample
+from sinuous.scenario import Scenario
+from sinuous.session.surface import SurfaceClearance, least_clearance
+
+# A body whose points all move slower than this [m/s], for that many steps, rests.
+REST_SPEED = 1e-4
+REST_STEPS = 10
+
+
+class PlantFailure(Exception):
+    """The plant measured something that is not a finite number."""
+
+
+def steps(scenario: Scenario) -> Iterator[Sample]:
+    """Yield every step of a scenario; a sample's time is that of the step's end.
+
+    A leg ends when its target no longer moves and the body rests, or after its largest
+    number of steps. The wall clock is never read but for the controller's own solve time.
+
+    Raises:
+        PlantFailure: if the plant measures something that is not a finite number
+    """
+    mpc, plant = scenario.mpc, scenario.new_plant()
+    surface = SurfaceClearance.of(scenario.robot, scenario.zone, scenario.first_configuration)
+    state, count = mpc.init(scenario.first_configuration), 0
+    for leg in scenario.path:
+        rest = Rest(mpc.dt)
+        for step in range(1, leg.steps(mpc.dt) + 1):
+            count += 1
+            before, target = state.c, leg.at(step * mpc.dt)
+            state, command = mpc.step(state, target)
+            measured = plant.step(command.rates, mpc.dt)
+            if not _finite(measured):
+                raise PlantFailure
+            yield _sample(
+                scenario,
+                time=count * mpc.dt,
+                target=target,
+                c=state.c,
+                command=command,
+                measured=measured,
+                clearance=surface.least(before, state.c),
+                movable=surface.guarded,
+            )
+            if rest.after(command.report.points) and step * mpc.dt >= leg.moving:
+                break
+
+
+class Rest:
+    """Tells when a body has come to rest.
+
+    Arguments:
+        dt: time between shapes [s]
+    """
+
+    def __init__(self, dt: float) -> None:
+        self._largest_step = REST_SPEED * dt
+        self._points: Array | None = None
+        self._still = 0
+
+    def after(self, points: Array) -> bool:
+        """Whether the body rests, now that its points are (S, 3) [m]."""
+        if self._points is not None:
+            moved = float(np.max(np.linalg.norm(points - self._points, axis=1)))
+            self._still = self._still + 1 if moved < self._largest_step else 0
+        self._points = points
+        return self._still >= REST_STEPS
+
+
+def status_name(status: Status) -> str:
+    """The short name of a status in recordings, such as "at target"."""
+    return status.name.lower().replace("_", " ")
+
+
+def _finite(measured: Measurement) -> bool:
+    values = (measured.points, measured.tip, measured.lengths)
+    return all(bool(np.all(np.isfinite(value))) for value in values)
+
+
+def _sample(
+    scenario: Scenario,
+    *,
+    time: float,
+    target: Array,
+    c: Array,
+    command: Command,
+    measured: Measurement,
+    clearance: float,
+    movable: BoolArray,
+) -> Sample:
+    robot, report = scenario.robot, command.report
+    return Sample(
+        time=time,
+        target=target,
+        configuration=c,
+        lengths=robot.lengths(c),
+        rates=command.rates,
+        nominal_points=report.points,
+        nominal_tip=report.points[-1],
+        nominal_clearance=clearance,
+        measured_points=measured.points,
+        measured_tip=measured.tip,
+        measured_lengths=measured.lengths,
+        actual_clearance=least_clearance(scenario.zone, measured.points, robot.radii, movable),
+        status=status_name(report.status),
+        solve_time=report.solve_time,
+        iterations=report.iterations,
+        planes=report.planes,
+        step_fraction=report.step_fraction,
+        active=tuple(active.name for active in report.active),
+    )
