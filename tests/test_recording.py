@@ -13,8 +13,10 @@ from mcap.reader import make_reader
 from mcap.writer import Writer
 from rosbags.highlevel import AnyReader
 
+from sinuous.control.report import Status
 from sinuous.errors import InputError
-from sinuous.recording import Header, Recorder, Recording, Sample, read
+from sinuous.recording import Header, Recorder, Recording, Sample, ZonePart, read, status_name
+from sinuous.recording.messages import LEVELS, ZONE_COLORS
 
 POINTS, ACTUATORS, COORDINATES = 7, 5, 3
 ANY_FLOAT = st.floats(width=64)
@@ -26,13 +28,15 @@ def make_header(**changes: Any) -> Header:
         "name": "tube, curvé",
         "robot": 'name = "x"\n# µ\n',
         "scenario": "[mpc]\nhorizon = 5\n",
-        "actuator_names": tuple(f"1.cable{i}" for i in range(ACTUATORS)),
+        "actuator_names": tuple(f"segment 1 cable {i + 1}" for i in range(ACTUATORS)),
         "rate_limits": np.tile([-0.02, np.inf], (ACTUATORS, 1)),
         "margin": 0.1 + 0.2,
         "dt": 1.0 / 30.0,
         "seed": 2**70,
         "versions": {"sinuous": "0.1.0", "numpy": "2"},
         "zone_triangles": rng.normal(size=(11, 3, 3)),
+        "zone_parts": rng.integers(0, len(ZonePart), size=11),
+        "radii": rng.random(POINTS),
         "disk_indices": np.array([1, 3, 6]),
     }
     return Header(**values | changes)
@@ -125,7 +129,7 @@ def test_any_number_and_text_survives(
 
 
 def test_without_steps_and_without_zone(tmp_path: Path) -> None:
-    header = make_header(zone_triangles=np.empty((0, 3, 3)))
+    header = make_header(zone_triangles=np.empty((0, 3, 3)), zone_parts=np.zeros(0, dtype=np.int64))
     found = read(record(tmp_path / "run.mcap", header, []))
     assert len(found) == 0
     assert found.complete
@@ -171,6 +175,10 @@ def test_a_reader_of_others_decodes_it_from_its_own_schemas(tmp_path: Path) -> N
                 assert stamp.sec * 10**9 + stamp.nanosec == time == round(len(tips[1:]) / 30 * 1e9)
             elif connection.topic == "/nominal/joint_states":
                 assert tuple(message.name) == header.actuator_names
+            elif connection.topic == "/zone":
+                colors = [ZONE_COLORS[ZonePart(p)] for p in header.zone_parts]
+                assert [c.a for c in message.colors[::3]] == [c.a for c in colors]
+                assert len(message.colors) == len(message.points)
             elif connection.topic == "/diagnostics":
                 status = message.status[0]
                 assert status.level == (2 if status.message == "holding" else 0)
@@ -179,6 +187,11 @@ def test_a_reader_of_others_decodes_it_from_its_own_schemas(tmp_path: Path) -> N
     assert set(counts.values()) == {len(samples)}
     assert types["/nominal/body"] == "nav_msgs/msg/Path"
     assert types["/zone"] == "visualization_msgs/msg/Marker"
+
+
+def test_every_status_has_its_level() -> None:
+    assert set(LEVELS) < {status_name(status) for status in Status}
+    assert len({(c.r, c.g, c.b, c.a) for c in ZONE_COLORS.values()}) == len(ZonePart)
 
 
 def test_the_container_is_chunked_indexed_and_checked(tmp_path: Path) -> None:

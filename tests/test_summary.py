@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from sinuous.recording import Header, Recording, Sample
+from sinuous.control.report import Status
+from sinuous.recording import Header, Recording, Sample, status_name
 from sinuous.summary import summarise
 from sinuous.view import print_summary
 
@@ -21,13 +22,15 @@ def make_run(steps: int, margin: float = MARGIN, **columns: Any) -> Recording:
         name="by hand",
         robot="",
         scenario="",
-        actuator_names=("1.cable1",),
+        actuator_names=("segment 1 cable 1",),
         rate_limits=np.array([[-1.0, 1.0]]),
         margin=margin,
         dt=0.1,
         seed=42,
         versions={"sinuous": "0.1.0"},
         zone_triangles=np.empty((0, 3, 3)),
+        zone_parts=np.zeros(0, dtype=np.int64),
+        radii=np.full(2, 0.008),
         disk_indices=np.zeros(0, dtype=np.int64),
     )
     still: dict[str, Any] = {
@@ -81,7 +84,8 @@ def test_violations_are_nominal_and_forgive_rounding_only() -> None:
 
 
 def test_failures_are_the_steps_that_hold() -> None:
-    status = ["tracking", "holding", "blocked", "recovering", "at rest", "holding"]
+    status = [status_name(s) for s in (*Status, Status.HOLDING)]
+    assert sorted(set(status)) == ["at_target", "blocked", "holding", "recovering", "tracking"]
     assert summarise(make_run(6, status=status))["solver_failures"] == 2
 
 

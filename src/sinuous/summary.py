@@ -5,13 +5,14 @@ import math
 import numpy as np
 
 from sinuous.arrays import Array, BoolArray
-from sinuous.recording import Recording
+from sinuous.control.report import Status
+from sinuous.recording import Recording, status_name
 
 MARGIN_TOLERANCE = 1e-9
 """[m] below the margin by less is not a violation: rounding, a thousandth of a micrometre."""
 
-FAILED = "holding"
-"""Status of a step whose solve failed, so that the controller held still."""
+FAILED = status_name(Status.HOLDING)
+"""Status of the steps that `solver_failures` counts."""
 
 
 def summarise(recording: Recording, *, wall_time: float | None = None) -> dict[str, object]:
@@ -26,7 +27,7 @@ def summarise(recording: Recording, *, wall_time: float | None = None) -> dict[s
     `margin_violations`
         number of steps whose nominal clearance is below the margin by more than 1e-9 m
     `solver_failures`
-        number of steps with status "holding"
+        number of steps in which no safe command was found, so that the controller held still
     `solve_time_s`
         median, 99th percentile and maximum of the controller's wall-clock time per step
     `real_time_factor`

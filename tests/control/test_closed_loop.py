@@ -1,18 +1,26 @@
 """Closed loops: walls, limits, targets out of reach, recovery, rest."""
 
+import dataclasses
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
+from sinuous.arrays import Array
 from sinuous.control.mpc import Costs, ShapeConstrainedMPC
 from sinuous.control.report import Status
 from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
+from sinuous.robots.pcc import PccRobot
 
 from .loops import Judged, assert_limits_kept, drive
 from .scenes import MARGIN, START, Scene, bent_tube, bumpy_tube, robot_at
 
 STEADY = 1e-5  # steady tip error a reachable target may leave [m]: the issue's figure
 JITTER = 1e-4  # movement at rest that would be felt as jitter [m]
+# A resting body keeps the plan's reserve (0.05 mm) and what covers its surface between
+# guarded points (0.11 mm) on top of the margin, and no more [m].
+AT_MARGIN = 2e-4
 RESTING = 30  # steps for which a robot at rest is watched
 
 
@@ -24,13 +32,10 @@ def test_no_step_in_a_random_tube_touches_the_margin(seed: int) -> None:
     deep = scene.axis[rng.integers(len(scene.axis) // 2, len(scene.axis))]
     side = rng.normal(size=3)
     targets = [deep + rng.normal(0.0, 0.008, 3), deep + 0.04 * side / np.linalg.norm(side)]
-    state, judged = drive(mpc, mpc.init(START), targets)
-    _, resting = drive(mpc, state, targets[-1:] * RESTING, steps=1)
-    for part in (judged, resting):
-        assert part.worst_margin >= 0.0
-        assert part.holds == 0
-        assert_limits_kept(part)
-    assert jitter(resting) < JITTER
+    _, judged = drive(mpc, mpc.init(START), targets)
+    assert judged.worst_margin >= 0.0
+    assert judged.holds == 0
+    assert_limits_kept(judged)
 
 
 @pytest.mark.parametrize("horizon", [1, 2, 20])
@@ -79,18 +84,18 @@ def test_a_tip_speed_limit_is_exact() -> None:
     assert speeds.max() > 0.9 * limit  # and it is used
 
 
-def test_an_unreachable_target_is_waited_for_at_the_margin() -> None:
+@pytest.mark.parametrize("out", [(-0.5, 0.6, 0.62), (0.9, 0.1, 0.4), (0.2, -0.9, -0.3)])
+def test_an_unreachable_target_is_waited_for_at_the_margin(out: tuple[float, ...]) -> None:
     scene = bent_tube()
     mpc = scene.mpc()
-    out = np.array([-0.5, 0.6, 0.62])
-    target = scene.axis[27] + 0.04 * out / np.linalg.norm(out)
-    state, _ = drive(mpc, mpc.init(START), [target])
+    target = scene.axis[27] + 0.04 * np.array(out) / np.linalg.norm(out)
+    state, approach = drive(mpc, mpc.init(START), [target])
     _, judged = drive(mpc, state, [target] * RESTING, steps=1)
     last = judged.commands[-1].report
+    assert min(approach.worst_margin, judged.worst_margin) >= 0.0
     assert last.status is Status.BLOCKED
-    assert last.active[0].triangle >= 0
-    assert 0.0 <= judged.worst_margin
-    assert MARGIN <= last.clearance <= MARGIN + 3e-4  # at the margin, not short of it
+    assert any(active.triangle >= 0 for active in last.active)
+    assert MARGIN <= last.clearance <= MARGIN + AT_MARGIN
     assert jitter(judged) < JITTER
 
 
@@ -125,7 +130,7 @@ def test_a_bad_start_is_left_without_breaking_a_limit(depth: float, rounds: int)
         assert slack >= worst - 1e-12 or slack >= 0.0  # never worse than before
         worst = slack
         state, judged = drive(mpc, state, [scene.axis[10]], steps=1, judged=judged)
-        if step == 0:
+        if step == 0 and depth > MARGIN:
             assert judged.commands[0].report.status is Status.RECOVERING
     assert mpc.walls.slack(mpc.stage(state.c)).min() >= 0.0
     assert judged.commands[-1].report.status is not Status.RECOVERING
@@ -133,32 +138,52 @@ def test_a_bad_start_is_left_without_breaking_a_limit(depth: float, rounds: int)
     assert judged.worst_rate <= 1.0 + 1e-12
 
 
-def test_a_spike_between_two_disks_is_not_touched() -> None:
+def spiked_room() -> tuple[PccRobot, SafeZone]:
+    """A wide room with a spike that points at the body midway between two disks.
+
+    The wire is thinner than the gap between disks: at rest its tip is 11 mm from the centre
+    line, which the disks beside it (4.5 mm away along the arm) see as 11.9 mm.
+    """
     robot = robot_at(-0.03)
-    room = SafeZone.from_mesh(shapes.box([0.2, 0.2, 0.3], centre=[0.0, 0.0, 0.149]),
-                              entrance=[0.0, 0.0, -0.001])  # fmt: skip
-    disks = robot.points(START)[robot.disk_indices]
-    between = 0.5 * (disks[14] + disks[15])
-    tip = between + [0.0125, 0.0, 0.0]  # 0.5 mm short of the margin plus the body radius... away
-    zone = room.minus(shapes.spike(tip + [0.06, 0.0, 0.0], tip, 0.002), name="spike")
-    mpc = ShapeConstrainedMPC(robot, zone, margin=MARGIN)
-    lean = robot.tip(START) + [0.03, 0.0, 0.01]  # pulls the body against the spike
-    _, judged = drive(mpc, mpc.init(START), [lean, lean + [0.0, 0.02, 0.0]], steps=150)
+    room = SafeZone.from_mesh(
+        shapes.box([0.2, 0.2, 0.3], centre=[0.0, 0.0, 0.149]), entrance=[0.0, 0.0, -0.001]
+    )
+    c = np.array([0.0, 0.0, 0.09] * 3)
+    disks = robot.points(c)[robot.disk_indices]
+    tip = 0.5 * (disks[14] + disks[15]) + [0.011, 0.0, 0.0]
+    return robot, room.minus(shapes.spike(tip + [0.06, 0.0, 0.0], tip, 0.001), name="spike")
+
+
+def pulled_to_the_spike(mpc: ShapeConstrainedMPC) -> Judged:
+    """The body bends sideways, in several ways, with the spike in its way."""
+    long = np.array([0.0, 0.0, 0.09] * 3)
+    tip = mpc.robot.tip(long)
+    targets = [tip + [0.05, 0.0, -0.02], tip + [0.02, 0.03, -0.03], tip + [0.06, -0.01, -0.04]]
+    _, judged = drive(mpc, mpc.init(long), targets, steps=60)
+    return judged
+
+
+def test_a_spike_midway_between_two_disks_is_not_touched() -> None:
+    robot, zone = spiked_room()
+    judged = pulled_to_the_spike(ShapeConstrainedMPC(robot, zone, margin=MARGIN))
     assert judged.worst_margin >= 0.0
     assert any(a.triangle >= 0 for c in judged.commands for a in c.report.active)
 
 
-def test_guarding_disks_only_lets_the_spike_in() -> None:
-    # The other side of the coverage rule (notes B7): nine millimetres between guarded points,
-    # and the distance they keep without the allowance for what lies between them.
-    robot = robot_at(-0.03)
-    disks = robot.points(START)[robot.disk_indices]
-    spacing = float(np.linalg.norm(disks[15] - disks[14]))
-    required = 0.008 + MARGIN
-    between = np.sqrt(required**2 - (spacing / 2) ** 2)  # spike that both disks just tolerate
-    assert required - between > 1e-4
-    allowed = robot.required_distance(MARGIN)[robot.disk_indices]
-    assert np.all(allowed > required)
+def test_guarding_disks_alone_lets_the_spike_in() -> None:
+    # The other side (notes B7): nine millimetres between guarded points and no allowance for
+    # what lies between them, as (18) is printed.
+    robot, zone = spiked_room()
+
+    @dataclass(frozen=True, kw_only=True, eq=False)
+    class DisksOnly(PccRobot):
+        def required_distance(self, margin: float) -> Array:
+            return self.radii + margin
+
+    fields = {f.name: getattr(robot, f.name) for f in dataclasses.fields(robot)}
+    careless = DisksOnly(**{**fields, "spacing": 0.009})
+    judged = pulled_to_the_spike(ShapeConstrainedMPC(careless, zone, margin=MARGIN))
+    assert judged.worst_margin < -5e-4  # notes B7 measured 0.77 mm and more
 
 
 def test_the_default_cost_has_no_steady_error_and_the_printed_one_has() -> None:

@@ -1,7 +1,5 @@
 """Costs against their own values, limits against the exact ones."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -283,7 +281,7 @@ def test_effort_means_the_same_at_every_rate(dt: float) -> None:
     model = TipError(weight=1e5).quadratic(stage, target)
     step = float(np.max(robot.rate_limits)) * dt
     scale = qp.Scale(step=step, inverse=np.linalg.inv(actuator_metric(robot)))
-    rows = replace(ActuatorRates().rows(stage, dt))
+    rows = ActuatorRates().rows(stage, dt)
     problem = qp.build(
         scale=scale,
         hessians=[model.hessian],

@@ -95,10 +95,16 @@ def test_guarding_points_only_lets_the_body_between_them_through() -> None:
 
 def test_required_distance_is_that_of_the_worse_section_at_joints() -> None:
     robot = load_robot("hachen2025")
-    first = replace(robot.segments[0], body_radius=0.012)
-    robot = replace(robot, segments=(first, *robot.segments[1:]))
-    required, joint = robot.required_distance(0.0), robot.disk_indices[9]
-    assert required[joint] == max(required[joint - 1], required[joint + 1])
+    first, second, third = robot.segments
+    thick = replace(first, body_radius=0.012)
+    fine = replace(third, disks=29, disk_thickness=0.0005)  # points every 1.6 mm, not every 3 mm
+    robot = replace(robot, segments=(thick, second, fine))
+    required = robot.required_distance(0.0)
+    for disks in (10, 20):
+        joint = robot.disk_indices[disks - 1]
+        before, after = required[joint - 1], required[joint + 1]
+        assert required[joint] == max(before, after)
+        assert before > after
     assert np.all(required > robot.radii)
 
 

@@ -42,10 +42,9 @@ RESERVE = 5e-5
 # with [m] (notes B17), at least one step at full speed.
 TRUST = 5e-4
 
-# A tip this close to its target is there; a step that moves no actuator by more than this
-# has nowhere to go [m].
+# A tip this close to its target is there [m]; a slower one has nowhere to go [m/s].
 ARRIVED = 1e-5
-STILL = 1e-6
+STILL = 3e-5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +57,7 @@ class Costs:
     """
 
     state: tuple[Cost, ...] = (TipError(weight=1e5), Posture(weight=5.0))
-    effort: Effort = field(default_factory=lambda: Effort(weight=1.0))
+    effort: Effort = field(default_factory=lambda: Effort(weight=0.1))
 
     @classmethod
     def printed(cls) -> "Costs":
@@ -228,6 +227,6 @@ class ShapeConstrainedMPC:
             return Status.RECOVERING
         if np.linalg.norm(end.tip - target) < ARRIVED:
             return Status.AT_TARGET
-        if np.max(np.abs(end.lengths - start.lengths)) < STILL:
+        if np.linalg.norm(end.tip - start.tip) < STILL * self.dt:
             return Status.BLOCKED
         return Status.TRACKING

@@ -18,11 +18,19 @@ SOFT, HARD = 8, 0  # DAQP's codes for a constraint
 OPTIMAL = (1, 2)  # solved; solved with soft constraints violated
 
 # A soft row costs this many times the largest cost gradient per unit of violation. It must
-# exceed the row's multiplier for the penalty to be exact; multipliers seen are below 50.
-PENALTY = 1e3
+# exceed the row's multiplier for the penalty to be exact; a test records the largest seen.
+PENALTY = 100.0
 
-# The quadratic part of the penalty, as the reciprocal weight DAQP asks for: practically none.
-LINEAR_PENALTY = 1e6
+# When far more rows are violated than can be helped, a large penalty costs the active-set
+# method its accuracy: it is tried again with less, because the least bad step still helps.
+RELAXED = (1.0, 0.1, 0.01)
+
+# The quadratic part of the penalty, as the reciprocal weight DAQP asks for. The linear part
+# makes the penalty exact; this one keeps the factorisations well conditioned.
+SOFTNESS = 1e-2
+
+# Active-set changes before the solver gives up; steps seen need fewer than 1000.
+ITERATIONS = 5000
 
 # Eigenvalues of a stage's scaled Hessian are kept above this share of the largest.
 CONVEX = 1e-9
@@ -75,9 +83,9 @@ class Solution:
     failure: str
 
     @classmethod
-    def nothing(cls) -> "Solution":
-        """What is known before anything was solved."""
-        return cls(y=np.zeros(0), multipliers=np.zeros(0), failure="nothing was solved")
+    def nothing(cls, failure: str = "nothing was solved") -> "Solution":
+        """No solution, and why."""
+        return cls(y=np.zeros(0), multipliers=np.zeros(0), failure=failure)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -177,6 +185,21 @@ def convex(H: Array) -> Array:
 
 def solve(problem: Problem) -> Solution:
     """Solve with DAQP (dual active set); soft rows carry an L1 penalty."""
+    numbers = (problem.H, problem.f, problem.A)
+    bounds = (problem.lower, problem.upper)
+    if not all(np.all(np.isfinite(x)) for x in numbers) or any(np.any(np.isnan(x)) for x in bounds):
+        return Solution.nothing("the QP is not finite")
+    failure = ""
+    for relaxed in RELAXED:
+        y, multipliers, flag = _daqp(problem, relaxed * problem.penalty)
+        if flag in OPTIMAL and np.all(np.isfinite(y)) and np.all(np.isfinite(multipliers)):
+            return Solution(y=y, multipliers=multipliers, failure="")
+        failure = FAILURES.get(flag, f"the QP solver ended with {flag}")
+    return Solution.nothing(failure)
+
+
+def _daqp(problem: Problem, penalty: float) -> tuple[Array, Array, int]:
+    """Solution, multipliers and exit flag of DAQP with a penalty on the soft rows."""
     sense = np.full(len(problem.A), SOFT, dtype=np.int32)
     sense[: problem.hard] = HARD
     y, _, flag, info = daqp.solve(
@@ -186,14 +209,11 @@ def solve(problem: Problem) -> Solution:
         problem.upper,
         problem.lower,
         sense,
-        rho_soft=LINEAR_PENALTY,
-        w_soft=problem.penalty,
+        rho_soft=SOFTNESS,
+        w_soft=penalty,
+        iter_limit=ITERATIONS,
     )
-    y, multipliers = np.array(y), np.array(info["lam"])
-    failure = "" if flag in OPTIMAL else FAILURES.get(flag, f"the QP solver ended with {flag}")
-    if not failure and not (np.all(np.isfinite(y)) and np.all(np.isfinite(multipliers))):
-        failure = "the QP solution is not finite"
-    return Solution(y=y, multipliers=multipliers, failure=failure)
+    return np.array(y), np.array(info["lam"]), int(flag)
 
 
 FAILURES = {

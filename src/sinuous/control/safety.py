@@ -45,7 +45,7 @@ class SafetyFilter:
         floors = [floor(constraint.slack(start)) for constraint in self.shape]
         for _ in range(ATTEMPTS):
             end = goal if share == 1.0 else at(start, goal, share)
-            allowed = min(limit.fraction(start, end, self.dt) for limit in self.limits)
+            allowed = min((x.fraction(start, end, self.dt) for x in self.limits), default=1.0)
             if allowed < 1.0:
                 share *= allowed * (1.0 - ROUNDING)
             elif self._safe(start, end, floors):

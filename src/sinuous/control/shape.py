@@ -13,6 +13,10 @@ from sinuous.control.stage import Stage
 TOLERANCE = 1e-6
 
 
+# Bend limits with less cable travel left than this get a row from the start [m].
+NEAR_BEND = 0.002
+
+
 @dataclass(frozen=True, kw_only=True)
 class Cuts:
     """Linear conditions slack + A delta >= 0 that stand in for a shape constraint.
@@ -134,21 +138,25 @@ class BendLimit:
         return float(min(np.min(a.bend_slack), np.min(b.bend_slack)))
 
     def cuts(self, stage: Stage, contacts: Contacts) -> Cuts:
-        A = stage.robot.bend_slack_jacobian(stage.c)
-        return self._rows(A, stage.bend_slack - self.reserve)
+        return self._rows(stage, np.flatnonzero(stage.bend_slack < NEAR_BEND), 0.0)
 
     def violated(self, stage: Stage, found: Stage) -> Cuts:
-        cuts = self.cuts(stage, Contacts.none())
-        linear = cuts.slack + cuts.jacobian @ (found.c - stage.c)
-        missed = np.maximum(linear - (found.bend_slack - self.reserve), 0.0)
-        corrected = self._rows(cuts.jacobian, cuts.slack - missed)
-        return corrected.only(np.flatnonzero(found.bend_slack < self.reserve - TOLERANCE))
+        beyond = np.flatnonzero(found.bend_slack < self.reserve - TOLERANCE)
+        linear = stage.bend_slack + stage.robot.bend_slack_jacobian(stage.c) @ (found.c - stage.c)
+        return self._rows(stage, beyond, np.maximum(linear - found.bend_slack, 0.0)[beyond])
 
     def describe(self, stage: Stage, source: int, triangle: int) -> str:
         return f"{stage.robot.bend_names[source]} at its limit"
 
-    def _rows(self, A: Array, slack: Array) -> Cuts:
-        count = len(slack)
-        none = np.full(count, -1, dtype=np.int64)
-        return Cuts(jacobian=A, slack=slack, source=np.arange(count), triangle=none,
-                    normal=np.zeros((count, 3)))  # fmt: skip
+    def _rows(self, stage: Stage, which: IntArray, missed: Array | float) -> Cuts:
+        """Tangents of some limits, lowered by what linearisation missed."""
+        A = stage.robot.bend_slack_jacobian(stage.c)[which]
+        rows = Cuts(
+            jacobian=A,
+            slack=stage.bend_slack[which] - self.reserve - missed,
+            source=which,
+            triangle=np.full(len(which), -1, dtype=np.int64),
+            normal=np.zeros((len(which), 3)),
+        )
+        # A straight segment of fixed length can bend any way: its limit has no tangent.
+        return rows.only(np.flatnonzero(np.any(A != 0.0, axis=1)))

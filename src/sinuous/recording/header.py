@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from sinuous.arrays import Array
+from sinuous.arrays import Array, IntArray
 from sinuous.recording.run import Header
 
 METADATA = "sinuous"
@@ -29,6 +29,7 @@ def metadata(header: Header) -> dict[str, str]:
         "dt": float(header.dt),
         "seed": header.seed,
         "versions": header.versions,
+        "radii": np.asarray(header.radii, dtype=np.float64).tolist(),
         "disk_indices": np.asarray(header.disk_indices, dtype=np.int64).tolist(),
     }
     return {key: json.dumps(value, ensure_ascii=False) for key, value in values.items()}
@@ -44,7 +45,9 @@ def is_readable(data: Mapping[str, str]) -> bool:
     return data.get("format") == str(FORMAT)
 
 
-def header(data: Mapping[str, str], files: Mapping[str, str], triangles: Array) -> Header:
+def header(
+    data: Mapping[str, str], files: Mapping[str, str], triangles: Array, parts: IntArray
+) -> Header:
     """The inverse of `metadata` and `attachments`.
 
     Raises:
@@ -62,5 +65,7 @@ def header(data: Mapping[str, str], files: Mapping[str, str], triangles: Array) 
         seed=values["seed"],
         versions=values["versions"],
         zone_triangles=triangles,
+        zone_parts=parts,
+        radii=np.array(values["radii"], dtype=np.float64),
         disk_indices=np.array(values["disk_indices"], dtype=np.int64),
     )

@@ -12,8 +12,9 @@ import numpy as np
 from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.stores import ros2_humble as ros
 
-from sinuous.arrays import Array
-from sinuous.recording.run import Header, Sample
+from sinuous.arrays import Array, IntArray
+from sinuous.control.report import Status
+from sinuous.recording.run import Header, Sample, ZonePart, status_name
 
 FRAME = "mesh"
 """Name of the one frame everything is expressed in: that of the zone's mesh."""
@@ -21,12 +22,19 @@ FRAME = "mesh"
 NS_PER_S = 1_000_000_000
 UPRIGHT = ros.geometry_msgs__msg__Quaternion(x=0.0, y=0.0, z=0.0, w=1.0)
 ZONE_TOPIC = "/zone"
-ZONE_COLOR = ros.std_msgs__msg__ColorRGBA(r=0.34, g=0.71, b=0.91, a=0.25)
+
+# Eighths are the same in single precision, which messages have, and when read back.
+ZONE_COLORS = {
+    ZonePart.WALL: ros.std_msgs__msg__ColorRGBA(r=0.375, g=0.75, b=0.875, a=0.25),
+    ZonePart.GUIDE: ros.std_msgs__msg__ColorRGBA(r=0.625, g=0.625, b=0.625, a=0.125),
+    ZonePart.KEEP_OUT: ros.std_msgs__msg__ColorRGBA(r=0.875, g=0.375, b=0.0, a=1.0),
+}
+PART_OF_COLOR = {(c.r, c.g, c.b, c.a): part for part, c in ZONE_COLORS.items()}
 
 LEVELS: dict[str, int] = {
-    "holding": ros.diagnostic_msgs__msg__DiagnosticStatus.ERROR,
-    "blocked": ros.diagnostic_msgs__msg__DiagnosticStatus.WARN,
-    "recovering": ros.diagnostic_msgs__msg__DiagnosticStatus.WARN,
+    status_name(Status.HOLDING): ros.diagnostic_msgs__msg__DiagnosticStatus.ERROR,
+    status_name(Status.BLOCKED): ros.diagnostic_msgs__msg__DiagnosticStatus.WARN,
+    status_name(Status.RECOVERING): ros.diagnostic_msgs__msg__DiagnosticStatus.WARN,
 }
 """How viewers colour a status; every other one is good."""
 
@@ -50,7 +58,7 @@ def nanoseconds(time: float) -> int:
 
 
 def zone_marker(header: Header) -> object:
-    """The zone's triangles as one translucent marker that stays for ever."""
+    """The zone's triangles as one marker that stays for ever, coloured by what they stand for."""
     return ros.visualization_msgs__msg__Marker(
         header=_stamped(0.0),
         ns="zone",
@@ -59,11 +67,11 @@ def zone_marker(header: Header) -> object:
         action=ros.visualization_msgs__msg__Marker.ADD,
         pose=ros.geometry_msgs__msg__Pose(position=_point((0.0, 0.0, 0.0)), orientation=UPRIGHT),
         scale=ros.geometry_msgs__msg__Vector3(x=1.0, y=1.0, z=1.0),
-        color=ZONE_COLOR,
+        color=ZONE_COLORS[ZonePart.WALL],
         lifetime=ros.builtin_interfaces__msg__Duration(sec=0, nanosec=0),
         frame_locked=False,
         points=[_point(corner) for corner in header.zone_triangles.reshape(-1, 3).tolist()],
-        colors=[],
+        colors=[ZONE_COLORS[ZonePart(p)] for p in header.zone_parts for _ in range(3)],
         texture_resource="",
         texture=ros.sensor_msgs__msg__CompressedImage(
             header=_stamped(0.0), format="", data=np.empty(0, dtype=np.uint8)
@@ -81,6 +89,16 @@ def zone_marker(header: Header) -> object:
 def marker_triangles(marker: Any) -> Array:
     """The triangles (T, 3, 3) [m] of a zone's marker."""
     return np.array([(p.x, p.y, p.z) for p in marker.points], dtype=np.float64).reshape(-1, 3, 3)
+
+
+def marker_parts(marker: Any) -> IntArray:
+    """The `ZonePart` (T,) of every triangle of a zone's marker.
+
+    Raises:
+        KeyError: if a colour stands for none
+    """
+    parts = [PART_OF_COLOR[c.r, c.g, c.b, c.a] for c in marker.colors[::3]]
+    return np.array(parts, dtype=np.int64)
 
 
 def _stamped(time: float) -> ros.std_msgs__msg__Header:

@@ -17,10 +17,16 @@ from mcap.stream_reader import CRCValidationError, breakup_chunk
 from rosbags.serde import SerdeError
 from zstandard import ZstdError
 
-from sinuous.arrays import Array
+from sinuous.arrays import Array, IntArray
 from sinuous.errors import InputError
 from sinuous.recording.header import METADATA, header, is_readable
-from sinuous.recording.messages import STORE, TOPICS, ZONE_TOPIC, marker_triangles
+from sinuous.recording.messages import (
+    STORE,
+    TOPICS,
+    ZONE_TOPIC,
+    marker_parts,
+    marker_triangles,
+)
 from sinuous.recording.run import Recording, Sample
 
 MAGIC = b"\x89MCAP0\r\n"
@@ -70,6 +76,7 @@ class _Content:
     files: dict[str, str] = field(default_factory=dict[str, str])
     channels: dict[int, str] = field(default_factory=dict[int, str])
     triangles: Array = field(default_factory=lambda: np.empty((0, 3, 3)))
+    parts: IntArray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     steps: dict[str, list[dict[str, Any]]] = field(
         default_factory=lambda: {topic.name: [] for topic in TOPICS}
     )
@@ -83,7 +90,7 @@ class _Content:
             for part in parts:
                 fields.update(part)
             samples.append(Sample(**fields))
-        found = header(self.metadata, self.files, self.triangles)
+        found = header(self.metadata, self.files, self.triangles, self.parts)
         return Recording.from_samples(found, samples, complete=self.complete)
 
 
@@ -145,6 +152,7 @@ def _take(record: records.McapRecord, content: _Content) -> None:
             if name == ZONE_TOPIC:
                 marker = STORE.deserialize_cdr(record.data, "visualization_msgs/msg/Marker")
                 content.triangles = marker_triangles(marker)
+                content.parts = marker_parts(marker)
             elif topic := BY_NAME.get(name):
                 message = STORE.deserialize_cdr(record.data, topic.msgtype)
                 content.steps[name].append(topic.decode(message))

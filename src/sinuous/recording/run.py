@@ -2,11 +2,26 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Self
 
 import numpy as np
 
 from sinuous.arrays import Array, ArrayLike, IntArray
+from sinuous.control.report import Status
+
+
+class ZonePart(IntEnum):
+    """What a triangle of the zone stands for."""
+
+    WALL = 0  # of the passage
+    GUIDE = 1  # of the passage's straight continuation before an entrance
+    KEEP_OUT = 2  # of an obstacle in the passage
+
+
+def status_name(status: Status) -> str:
+    """How a sample writes a status: tracking, at_target, blocked, recovering or holding."""
+    return status.name.lower()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -23,6 +38,8 @@ class Header:
     seed: int
     versions: dict[str, str]  # package name -> version
     zone_triangles: Array  # (T, 3, 3) corners in the mesh's frame [m]; T = 0 in free space
+    zone_parts: IntArray  # (T,) the `ZonePart` of each triangle
+    radii: Array  # (S,) body radius at each of the body points [m]
     disk_indices: IntArray  # (D,) which of the body points are disk centres
 
 
@@ -45,7 +62,7 @@ class Sample:
     measured_lengths: Array  # (P,) [m]
     actual_clearance: float  # as nominal_clearance, of the plant's body [m]
 
-    status: str
+    status: str  # as `status_name` writes it
     solve_time: float  # wall-clock time the controller took [s]
     iterations: int
     planes: int  # triangle planes in the problem

@@ -3,9 +3,11 @@
 import platform
 from importlib.metadata import PackageNotFoundError, version
 
-from sinuous.arrays import Array
+import numpy as np
+
+from sinuous.arrays import Array, IntArray
 from sinuous.geometry.safe_zone import SafeZone
-from sinuous.recording import Header
+from sinuous.recording import Header, ZonePart
 from sinuous.scenario import Scenario
 
 PACKAGES = ("sinuous", "numpy", "scipy", "numba", "daqp", "trimesh")
@@ -15,6 +17,7 @@ PACKAGES = ("sinuous", "numpy", "scipy", "numba", "daqp", "trimesh")
 def make_header(scenario: Scenario) -> Header:
     """The header of a run of a scenario."""
     mpc, robot = scenario.mpc, scenario.robot
+    triangles, parts = _drawn(scenario.zone)
     return Header(
         name=scenario.name,
         robot=scenario.robot_text or f"# {robot.name} was built in Python\n",
@@ -25,14 +28,19 @@ def make_header(scenario: Scenario) -> Header:
         dt=mpc.dt,
         seed=scenario.seed,
         versions=versions(),
-        zone_triangles=_drawn(scenario.zone),
+        zone_triangles=triangles,
+        zone_parts=parts,
+        radii=robot.radii,
         disk_indices=robot.disk_indices,
     )
 
 
-def _drawn(zone: SafeZone) -> Array:
-    """The walls (T, 3, 3) [m] without what stands for an entrance: its guide and its open end."""
-    return zone.triangles[~(zone.is_guide | zone.is_open)]
+def _drawn(zone: SafeZone) -> tuple[Array, IntArray]:
+    """Every triangle (T, 3, 3) [m] that is a wall, and its `ZonePart` (T,); open ends are none."""
+    parts = np.full(len(zone.triangles), int(ZonePart.WALL))
+    parts[zone.is_guide] = ZonePart.GUIDE
+    parts[zone.is_keep_out] = ZonePart.KEEP_OUT
+    return zone.triangles[~zone.is_open], parts[~zone.is_open]
 
 
 def versions() -> dict[str, str]:
