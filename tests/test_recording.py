@@ -247,9 +247,13 @@ def test_a_killed_process_leaves_all_but_the_last_second(tmp_path: Path) -> None
 
 
 def test_an_exception_in_the_run_leaves_a_whole_file(tmp_path: Path) -> None:
-    with pytest.raises(KeyboardInterrupt), Recorder(tmp_path / "r.mcap", make_header()) as recorder:
-        recorder.write(make_sample(0))
-        raise KeyboardInterrupt
+    def interrupted() -> None:
+        with Recorder(tmp_path / "r.mcap", make_header()) as recorder:
+            recorder.write(make_sample(0))
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
     found = read(tmp_path / "r.mcap")
     assert found.complete
     assert len(found) == 1
@@ -335,12 +339,8 @@ def test_a_disk_that_fills_up_names_the_file(
         return io.BufferedWriter(Full(self, mode))
 
     monkeypatch.setattr(Path, "open", open_full)
-    with (
-        pytest.raises(InputError, match=r"run\.mcap.*no space left"),
-        Recorder(path, make_header()) as recorder,
-    ):
-        for k in range(200):
-            recorder.write(make_sample(k))
+    with pytest.raises(InputError, match=r"run\.mcap.*no space left"):
+        record(path, make_header(), [make_sample(k) for k in range(200)])
     monkeypatch.undo()
     if space:
         assert not read(path).complete

@@ -120,5 +120,5 @@ def test_people_read_millimetres_and_milliseconds() -> None:
     run = make_run(1, measured_tip=[np.array([0.0012345, 0.0, 0.0])], status=["holding"])
     print_summary(Console(file=stream, width=80), summarise(run, wall_time=0.01), title="free")
     text = stream.getvalue()
-    for expected in ("free", "1.234 mm", "1.000 ms", "no wall", "10 ×", "42"):
+    for expected in ("free", "1.234 mm", "1.000 ms", "no wall", "10 x", "42"):
         assert expected in text

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from sinuous.arrays import Array
+from sinuous.control import qp
 from sinuous.control.mpc import Costs, ShapeConstrainedMPC
 from sinuous.control.report import Status
 from sinuous.geometry import shapes
@@ -69,6 +70,26 @@ def test_reachable_targets_are_reached_where_walls_press_and_where_they_do_not()
         assert np.linalg.norm(last.points[-1] - target) < STEADY
         walls += any(active.triangle >= 0 for active in last.active)
     assert walls > 0  # at least one of them is reached leaning on a wall
+
+
+def test_the_penalty_on_walls_is_far_above_their_multipliers(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # Otherwise the L1 penalty would not be exact and walls would give way.
+    scene, used = bent_tube(), list[float]()
+    solve = qp.solve
+
+    def watched(problem: qp.Problem) -> qp.Solution:
+        solution = solve(problem)
+        soft = np.abs(solution.multipliers[problem.hard :])
+        used.append(float(soft.max(initial=0.0)) / problem.penalty)
+        return solution
+
+    monkeypatch.setattr(qp, "solve", watched)
+    mpc = scene.mpc()
+    far = [scene.axis[27] + [0.04, 0.0, 0.0], scene.axis[15] + [0.0, 0.3, 0.0]]
+    drive(mpc, mpc.init(START), far, steps=80)
+    assert 0.0 < max(used) < 0.1
 
 
 def test_a_tip_speed_limit_is_exact() -> None:

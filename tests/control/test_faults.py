@@ -7,6 +7,7 @@ from sinuous.control import plan, qp
 from sinuous.control.mpc import ShapeConstrainedMPC
 from sinuous.control.report import Status
 from sinuous.control.safety import SafetyFilter
+from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
 
 from .scenes import START, bent_tube, robot_at
@@ -30,7 +31,7 @@ def test_a_failed_solve_holds_still_and_the_next_step_goes_on(
     mpc = scene.mpc()
     state, _ = mpc.step(mpc.init(START), scene.axis[12])
     with monkeypatch.context() as broken:
-        broken.setattr(qp, "_daqp", lambda problem, penalty: (problem.f, problem.lower, -4))
+        broken.setattr(qp, "_daqp", lambda problem: (problem.f, problem.lower, -4))
         held, command = mpc.step(state, scene.axis[12])
     assert command.report.status is Status.HOLDING
     assert command.report.reason == "the QP solver reached its iteration limit"
@@ -44,7 +45,7 @@ def test_a_solution_that_is_not_finite_is_refused(monkeypatch: pytest.MonkeyPatc
     scene = bent_tube()
     mpc = scene.mpc()
     monkeypatch.setattr(
-        qp, "_daqp", lambda problem, penalty: (problem.f * np.nan, problem.lower, qp.OPTIMAL[0])
+        qp, "_daqp", lambda problem: (problem.f * np.nan, problem.lower, qp.OPTIMAL[0])
     )
     _, command = mpc.step(mpc.init(START), scene.axis[12])
     assert command.report.status is Status.HOLDING
@@ -82,8 +83,6 @@ def test_a_short_way_through_a_thin_wall_is_seen() -> None:
     c, other = START.copy(), START.copy()
     c[3], other[3] = -0.35, 0.35
     middle = robot.points(START)[-1]
-    from sinuous.geometry import shapes
-
     room = SafeZone.from_mesh(shapes.box([0.4, 0.4, 0.4]))
     needle = shapes.capsule(middle + [0.0, -0.05, 0.0], middle + [0.0, 0.05, 0.0], 0.0005)
     mpc = ShapeConstrainedMPC(robot, room.minus(needle, name="needle"), margin=0.001)

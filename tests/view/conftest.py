@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from sinuous.arrays import Array
-from sinuous.recording import Header, Recording, Sample
+from sinuous.control.report import Status
+from sinuous.recording import Header, Recording, Sample, ZonePart, status_name
 
 DT = 1.0 / 30.0
 POINTS = 41
@@ -18,7 +19,11 @@ PITCH = 0.007
 ANGLES = np.array([0.0, 2.0, 4.0]) * np.pi / 3.0
 RATES = np.array([0.02, 0.02, 0.02, 0.01] * 2 + [0.015])
 NAMES = (
-    *(f"{s}.{part}" for s in (1, 2) for part in ("cable1", "cable2", "cable3", "backbone")),
+    *(
+        f"segment {s} {part}"
+        for s in (1, 2)
+        for part in ("cable 1", "cable 2", "cable 3", "backbone")
+    ),
     "insertion",
 )
 # One row per way-point: bend about y and x of both segments [rad], their lengths and the
@@ -106,6 +111,8 @@ def header(zone: Array) -> Header:
         seed=7,
         versions={"sinuous": "0.1.0", "numpy": "2.4.6"},
         zone_triangles=zone,
+        zone_parts=np.full(len(zone), int(ZonePart.WALL)),
+        radii=np.full(POINTS, BODY_RADIUS),
         disk_indices=np.arange(4, POINTS, 4, dtype=np.int64),
     )
 
@@ -151,7 +158,7 @@ def simulate(
                 measured_tip=measured[-1],
                 measured_lengths=lengths(c) + rng.normal(0.0, 1e-5, len(NAMES)),
                 actual_clearance=clearance(measured) if walls else np.inf,
-                status="holding" if k == steps // 2 else "tracking",
+                status=status_name(Status.HOLDING if k == steps // 2 else Status.TRACKING),
                 solve_time=float(1.5e-4 * rng.lognormal(0.0, 0.35) * (3.0 if near else 1.0)),
                 iterations=int(rng.integers(2, 8)),
                 planes=int(rng.integers(0, 12)),

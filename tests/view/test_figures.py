@@ -1,6 +1,6 @@
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,6 @@ from sinuous.recording import Recording
 from sinuous.view import save_comparison, save_figures, style
 from sinuous.view.comparison import effort
 from sinuous.view.curves import way_point_switches, way_points
-from sinuous.view.figures import actuator_kinds
 from sinuous.view.style import DPI
 
 NAMES = ["shapes.png", "tip_error.png", "clearance.png", "rates.png", "solve_time.png"]
@@ -115,13 +114,32 @@ def test_way_points_are_found_only_where_the_target_jumps(simulated: Simulate) -
     assert len(way_points(moving)) == 0
 
 
-def test_actuators_by_kind(run: Recording) -> None:
-    kinds = actuator_kinds(run)
-    assert {kind: list(members) for kind, members in kinds.items()} == {
-        "cable": [0, 1, 2, 4, 5, 6],
-        "backbone": [3, 7],
-        "insertion": [8],
-    }
+def test_rates_have_one_panel_per_kind(run: Recording, drawn: Drawn) -> None:
+    panels: Any = drawn.figures[NAMES.index("rates.png")].axes
+    kinds = ["cable", "backbone", "insertion"]
+    assert [axes.get_ylabel() for axes in panels] == [f"{kind} rate [mm/s]" for kind in kinds]
+    for axes, limit in zip(panels, (20.0, 10.0, 15.0), strict=True):
+        heights = [list(line.get_ydata()) for line in axes.lines if len(line.get_ydata()) == 2]
+        assert [-limit, -limit] in heights
+        assert [limit, limit] in heights
+    keys = [[text.get_text() for text in axes.get_legend().get_texts()] for axes in panels]
+    cables = ["cable 1", "cable 2", "cable 3"]
+    assert keys[0] == ["segment 1", "segment 2", *cables, "limit"]
+    assert keys[1] == ["segment 1", "segment 2", "limit"]
+    assert keys[2] == ["insertion", "limit"]
+    curves = [line for line in panels[0].lines if len(line.get_ydata()) == len(run)]
+    # There is no public way to read a line's own dashes back.
+    looks = {(str(c.get_color()), str(c._unscaled_dash_pattern)) for c in curves}
+    assert len(looks) == len(curves) == 6
+
+
+def test_steps_that_take_longer_than_the_period_are_counted(run: Recording, tmp_path: Path) -> None:
+    late = replace(run, solve_time=np.where(np.arange(len(run)) < 7, 1.0, 1e-3))
+    with keeping_figures() as figures:
+        save_figures(late, tmp_path)
+    labels = figures[NAMES.index("solve_time.png")].axes[0].get_legend_handles_labels()[1]
+    period = f"control period: {1e3 * run.header.dt:.3g} ms"
+    assert [f"in time ({len(run) - 7} steps)", "late (7 steps)", period] == labels[:3]
 
 
 def test_effort_is_a_share_of_the_limits(run: Recording) -> None:

@@ -76,7 +76,8 @@ class KinematicPlant:
         self._lengths = self._lengths + dt * np.asarray(rates, dtype=float)
         if self._until_redraw <= 1e-9 * dt:
             self._draw()
-            self._until_redraw += 1.0 / self._disturbance.rate
+            # Steps longer than the period draw once each and leave no backlog.
+            self._until_redraw = max(self._until_redraw + 1.0 / self._disturbance.rate, dt)
         self._until_redraw -= dt
         c = self.robot.configuration(self._lengths + self._w_x)
         points = self.robot.points(c) + self._w_y

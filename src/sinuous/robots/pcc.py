@@ -361,7 +361,7 @@ class PccRobot:
         return self.tip_pose(c)[..., :3, 3]
 
     def tip_pose(self, c: ArrayLike) -> Array:
-        """Tip pose T_w_t (..., 4, 4); its z axis points along the last section."""
+        """Tip pose T_w_t (..., 4, 4): at the tool's end, oriented like the last disk."""
         flat, shape = self._flat(c)
         sections = len(self._sections)
         T = np.tile(np.eye(4), (len(flat), 1, 1))
