@@ -40,20 +40,21 @@ def plane_of(outline: Array) -> tuple[Array, Array, float]:
     return centre, normal, float(np.abs(arm @ normal).max())
 
 
-def open_findings(draft: Draft) -> list[Finding]:
-    """Say how many open ends a mesh has and where."""
+def open_findings(draft: Draft, keep_out: bool = False) -> list[Finding]:
+    """Say how many open ends a mesh has and where; those of a keep-out are never capped."""
     ends = boundary_loops(draft)
     if not ends:
         return []
     outlines = [draft.vertices[e] for e in ends]
     sizes = ", ".join(f"{1e3 * size_of(o):.3g}" for o in outlines[:3])
-    planar = all(plane_of(o)[2] <= PLANAR * size_of(o) for o in outlines)
-    remedy = (
-        "Set cap = true to close the open ends by planar caps."
-        if planar
-        else "Close it in a mesh editor; caps are only made for planar ends."
-    )
-    what = f"an open mesh: {len(ends)} open ends, {sizes} mm across"
+    if keep_out:
+        remedy = "Close it in a mesh editor: a keep-out has to enclose what it blocks."
+    elif all(plane_of(o)[2] <= PLANAR * size_of(o) for o in outlines):
+        remedy = "Set cap = true to close the open ends by planar caps."
+    else:
+        remedy = "Close it in a mesh editor; caps are only made for planar ends."
+    count = "one open end" if len(ends) == 1 else f"{len(ends)} open ends"
+    what = f"an open mesh: {count}, {sizes} mm across"
     return [fatal(what, "a closed mesh", remedy, places([o.mean(axis=0) for o in outlines]))]
 
 

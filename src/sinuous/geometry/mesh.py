@@ -2,62 +2,24 @@
 
 from collections.abc import Callable
 from os import PathLike
-from pathlib import Path
-from typing import Any, cast
 
 import numpy as np
-import trimesh
 
 from sinuous.arrays import Array, ArrayLike, IntArray
-from sinuous.errors import InputError
-from sinuous.files import length_unit
 from sinuous.geometry import draft as repair
 from sinuous.geometry.caps import add_caps, open_findings
 from sinuous.geometry.draft import Draft, Step, fatal
+from sinuous.geometry.mesh_file import EXPORT_AGAIN, read_mesh
 from sinuous.geometry.pieces import orient
 from sinuous.geometry.report import Finding, MeshReport, Severity
 from sinuous.geometry.surface import Part, Surface
 
-FORMATS = (".stl", ".obj", ".ply")
 SMALLEST, LARGEST = 5e-3, 10.0  # plausible sizes of a passage [m]
-
-
-def read_mesh(path: str | PathLike[str], *, unit: str) -> tuple[Array, IntArray]:
-    """Read vertices [m] (V, 3) and faces (F, 3) of an STL, OBJ or PLY file.
-
-    Raises:
-        InputError: if the unit is unknown or the file is missing, empty, of another format or
-            broken
-    """
-    path = Path(path)
-    metres = length_unit(unit, file=str(path), field="unit")
-    expected = "an STL, OBJ or PLY file"
-    remedy = "Export the mesh again from the program that made it."
-    if not path.is_file():
-        remedy = "Check the path; it is relative to the current directory."
-        raise InputError(file=str(path), expected=expected, found="no such file", remedy=remedy)
-    if path.suffix.lower() not in FORMATS:
-        remedy = "Convert the mesh to one of these formats."
-        found = f'a file that ends in "{path.suffix}"'
-        raise InputError(file=str(path), expected=expected, found=found, remedy=remedy)
-    if path.stat().st_size == 0:
-        raise InputError(file=str(path), expected=expected, found="an empty file", remedy=remedy)
-    try:
-        options: dict[str, Any] = {"process": False, "force": "mesh", "skip_materials": True}
-        if path.suffix.lower() != ".obj":
-            del options["skip_materials"]
-        mesh = cast(Any, trimesh.load(path, **options))
-        vertices = np.asarray(mesh.vertices, dtype=np.float64).reshape(-1, 3) * metres
-        faces = np.asarray(getattr(mesh, "faces", ()), dtype=np.int64).reshape(-1, 3)
-    except Exception as error:  # whatever a parser stumbles over, the file is what is wrong
-        found = f"one that cannot be read ({error or type(error).__name__})"
-        raise InputError(file=str(path), expected=expected, found=found, remedy=remedy) from error
-    return vertices, faces
 
 
 def _check_numbers(vertices: Array, faces: IntArray) -> list[Finding]:
     """Find what makes all further checks meaningless."""
-    remedy = "Export the mesh again from the program that made it."
+    remedy = EXPORT_AGAIN
     if len(faces) == 0:
         return [fatal("no triangles", "a mesh of triangles", remedy)]
     bad = ~np.isfinite(vertices).all(axis=1)
@@ -80,17 +42,21 @@ def _check_scale(draft: Draft, keep_out: bool) -> list[Finding]:
     return [
         fatal(
             f"an implausible size, {size:.3g} m ({1e3 * size:.3g} mm)",
-            f"a largest extent between {1e3 * SMALLEST:g} mm and {LARGEST:g} m",
+            f"a largest extent of at most {LARGEST:g} m"
+            if keep_out
+            else f"a largest extent between {1e3 * SMALLEST:g} mm and {LARGEST:g} m",
             f"The unit is probably wrong: the numbers are likely in a {likely} one.",
         )
     ]
 
 
-def _pipeline(cap: bool) -> list[Callable[[Draft], Step]]:
+def _pipeline(cap: bool, keep_out: bool) -> list[Callable[[Draft], Step]]:
     """The checks and repairs in their order; each may rely on the ones before it."""
 
     def close(draft: Draft) -> Step:
-        return add_caps(draft) if cap and not draft.closed else (draft, open_findings(draft))
+        if cap and not draft.closed:
+            return add_caps(draft)
+        return draft, open_findings(draft, keep_out)
 
     return [
         repair.drop_duplicates,
@@ -131,7 +97,7 @@ def _examine(
     )
     findings = [] if len(draft.faces) else _check_numbers(vertices, draft.faces)
     findings = findings or _check_scale(draft, keep_out)
-    for step in _pipeline(cap):
+    for step in _pipeline(cap, keep_out):
         if any(f.severity is Severity.FATAL for f in findings):
             return None, report(findings, draft)
         draft, more = step(draft)

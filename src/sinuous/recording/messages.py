@@ -23,11 +23,11 @@ NS_PER_S = 1_000_000_000
 UPRIGHT = ros.geometry_msgs__msg__Quaternion(x=0.0, y=0.0, z=0.0, w=1.0)
 ZONE_TOPIC = "/zone"
 
-# Eighths are the same in single precision, which messages have, and when read back.
+# Sixteenths are the same in single precision, which messages have, and when read back.
 ZONE_COLORS = {
     ZonePart.WALL: ros.std_msgs__msg__ColorRGBA(r=0.375, g=0.75, b=0.875, a=0.25),
     ZonePart.GUIDE: ros.std_msgs__msg__ColorRGBA(r=0.625, g=0.625, b=0.625, a=0.125),
-    ZonePart.KEEP_OUT: ros.std_msgs__msg__ColorRGBA(r=0.875, g=0.375, b=0.0, a=1.0),
+    ZonePart.KEEP_OUT: ros.std_msgs__msg__ColorRGBA(r=0.375, g=0.4375, b=0.5, a=1.0),
 }
 PART_OF_COLOR = {(c.r, c.g, c.b, c.a): part for part, c in ZONE_COLORS.items()}
 

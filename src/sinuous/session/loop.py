@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from sinuous.arrays import Array, BoolArray
-from sinuous.control.report import Command, Status
+from sinuous.control.report import Command
 from sinuous.plants.plant import Measurement
-from sinuous.recording import Sample
+from sinuous.recording import Sample, status_name
 from sinuous.scenario import Scenario
 from sinuous.session.surface import SurfaceClearance, least_clearance
 
@@ -74,11 +74,6 @@ class Rest:
             self._still = self._still + 1 if moved < self._largest_step else 0
         self._points = points
         return self._still >= REST_STEPS
-
-
-def status_name(status: Status) -> str:
-    """The short name of a status in recordings, such as "at target"."""
-    return status.name.lower().replace("_", " ")
 
 
 def _finite(measured: Measurement) -> bool:

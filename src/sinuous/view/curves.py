@@ -1,18 +1,17 @@
 """One quantity of a run over time, drawn on axes that are given."""
 
-from collections import Counter
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.ticker import FuncFormatter, LogFormatter
 
-from sinuous.arrays import Array, IntArray
+from sinuous.arrays import Array, BoolArray, IntArray
 from sinuous.recording import Recording
 from sinuous.summary import tip_error, violates_margin
 from sinuous.view.style import (
     BLACK,
-    CYCLE,
     GREY,
     LIMIT,
     MEASURED,
@@ -36,8 +35,9 @@ MOVING_SHARE = 0.2
 
 NO_STEPS = "no steps recorded"
 NO_WALL = "no wall: clearance is unlimited"
-DASHES = ("solid", (0, (5, 2)), (0, (1.2, 1.6)), (0, (6, 2, 1.2, 2)))
 LIMIT_DASH = (0, (5, 3))
+BENEATH: dict[str, Any] = {"linewidth": 3.6, "alpha": 0.5}
+"""Style of the broader curve of two that are often the same."""
 
 
 def way_point_switches(recording: Recording) -> IntArray:
@@ -56,11 +56,11 @@ def way_points(recording: Recording) -> Array:
 
 def draw_tip_error(axes: Axes, recording: Recording) -> None:
     """Distance from tip to target, of the model and of the plant."""
-    if not _prepare(axes, recording, "tip error [mm]"):
+    if not prepare(axes, recording, "tip error [mm]"):
         return
     nominal = _error_mm(recording.nominal_tip, recording.target)
     measured = _error_mm(recording.measured_tip, recording.target)
-    axes.plot(recording.time, measured, color=MEASURED, label="measured")
+    axes.plot(recording.time, measured, color=MEASURED, label="measured", **BENEATH)
     axes.plot(recording.time, nominal, color=NOMINAL, label="nominal")
     scale_error(axes, np.concatenate((nominal, measured)))
     mark_switches(axes, recording)
@@ -97,14 +97,14 @@ def mark_switches(axes: Axes, recording: Recording) -> None:
 
 def draw_clearance(axes: Axes, recording: Recording) -> None:
     """Least clearance of the body, the margin, and the steps that break it."""
-    if not _prepare(axes, recording, "body clearance [mm]"):
+    if not prepare(axes, recording, "body clearance [mm]"):
         return
     if not np.any(np.isfinite(recording.nominal_clearance)):
         axes.set_yticks([])
         note(axes, NO_WALL)
         return
     actual, nominal = recording.actual_clearance, recording.nominal_clearance
-    axes.plot(recording.time, actual * MM_PER_M, color=MEASURED, label="actual")
+    axes.plot(recording.time, actual * MM_PER_M, color=MEASURED, label="actual", **BENEATH)
     axes.plot(recording.time, nominal * MM_PER_M, color=NOMINAL, label="nominal")
     margin = recording.header.margin * MM_PER_M
     axes.axhline(margin, color=LIMIT, linewidth=1.2, linestyle=LIMIT_DASH, label="margin")
@@ -132,45 +132,24 @@ def draw_wall(axes: Axes) -> None:
     axes.set_ylim(low, high)
 
 
-def draw_rates(axes: Axes, recording: Recording, actuators: IntArray, kind: str) -> None:
-    """Rates of actuators of one kind between their limits; colour per segment, dash per cable."""
-    if not _prepare(axes, recording, f"{kind} rate [mm/s]"):
-        return
-    names = [recording.header.actuator_names[i] for i in actuators]
-    owners = list(dict.fromkeys(_owner(name) for name in names))
-    drawn: Counter[str] = Counter()
-    for i, name, owner in zip(actuators, names, map(_owner, names), strict=True):
-        axes.step(
-            recording.time,
-            recording.rates[:, i] * MM_PER_M,
-            where="post",
-            color=CYCLE[owners.index(owner) % len(CYCLE)],
-            linestyle=DASHES[drawn[owner] % len(DASHES)],
-            label=name,
-        )
-        drawn[owner] += 1
-    limits = np.unique(recording.header.rate_limits[actuators]) * MM_PER_M
-    for j, limit in enumerate(limits[np.isfinite(limits)]):
-        axes.axhline(
-            float(limit),
-            color=LIMIT,
-            linewidth=1.2,
-            linestyle=LIMIT_DASH,
-            label="limit" if j == 0 else None,
-        )
-    low, high = axes.get_ylim()
-    axes.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
-
-
 def draw_solve_time(axes: Axes, recording: Recording) -> None:
     """Solve time of every step, on a logarithmic axis, with the control period above it."""
-    if not _prepare(axes, recording, "solve time [ms]"):
+    if not prepare(axes, recording, "solve time [ms]"):
         return
-    times = recording.solve_time * MS_PER_S
-    axes.plot(recording.time, times, linestyle="none", marker=".", markersize=3.5, color=SKY)
+    times, late = recording.solve_time * MS_PER_S, is_late(recording)
+    dots: dict[str, Any] = {"linestyle": "none", "marker": ".", "markersize": 4.5}
+    for chosen, color, label in ((~late, SKY, "in time"), (late, VERMILION, "late")):
+        if np.any(chosen):
+            name = f"{label} ({np.count_nonzero(chosen)} steps)"
+            axes.plot(recording.time[chosen], times[chosen], color=color, label=name, **dots)
     axes.set_yscale("log")
     write_plainly(axes.yaxis)
     mark_solve_times(axes, recording)
+
+
+def is_late(recording: Recording) -> BoolArray:
+    """Which steps (K,) took the controller longer than a control period."""
+    return recording.solve_time > recording.header.dt
 
 
 def mark_solve_times(axes: Axes, recording: Recording) -> None:
@@ -187,7 +166,7 @@ def mark_solve_times(axes: Axes, recording: Recording) -> None:
         axes.axhline(value, color=color, linewidth=1.3, linestyle=style, label=label)
 
 
-def _prepare(axes: Axes, recording: Recording, label: str) -> bool:
+def prepare(axes: Axes, recording: Recording, label: str) -> bool:
     """Label the axes; whether there is anything to draw."""
     axes.set_xlabel(TIME_LABEL)
     axes.set_ylabel(label)
@@ -211,8 +190,3 @@ def _plain(value: float, _: int | None) -> str:
 
 def _error_mm(tip: Array, target: Array) -> Array:
     return np.maximum(tip_error(tip, target) * MM_PER_M, LEAST_ERROR_MM)
-
-
-def _owner(name: str) -> str:
-    """What an actuator belongs to: "1" of "1.cable2", all of a name without a dot."""
-    return name.rpartition(".")[0] or name

@@ -5,16 +5,15 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from sinuous.arrays import IntArray
 from sinuous.recording import Recording
 from sinuous.view.curves import (
     NO_STEPS,
     draw_clearance,
-    draw_rates,
     draw_solve_time,
     draw_tip_error,
     mark_solve_times,
 )
+from sinuous.view.rates import draw_rates, rates_height
 from sinuous.view.scene3d import draw_shapes
 from sinuous.view.style import SKY, note, save
 from sinuous.view.units import MS_PER_S
@@ -34,23 +33,17 @@ def save_figures(recording: Recording, out: Path | str) -> list[Path]:
     """
     out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
-    panels = max(len(actuator_kinds(recording)), 1)
     return [
         save(out / "shapes.png", (14.0, 6.6), lambda f: draw_shapes(f, recording)),
         save(out / "tip_error.png", WIDE, lambda f: _tip_error(f, recording)),
         save(out / "clearance.png", WIDE, lambda f: _clearance(f, recording)),
-        save(out / "rates.png", (10.0, 1.0 + 2.5 * panels), lambda f: _rates(f, recording)),
+        save(
+            out / "rates.png",
+            (10.0, rates_height(recording)),
+            lambda f: draw_rates(f, recording),
+        ),
         save(out / "solve_time.png", WIDE, lambda f: _solve_time(f, recording)),
     ]
-
-
-def actuator_kinds(recording: Recording) -> dict[str, IntArray]:
-    """Actuators by kind: "1.cable2" is a cable, "insertion" is an insertion."""
-    kinds: dict[str, list[int]] = {}
-    for i, name in enumerate(recording.header.actuator_names):
-        kind = name.rpartition(".")[2].rstrip("0123456789") or "actuator"
-        kinds.setdefault(kind, []).append(i)
-    return {kind: np.array(members, dtype=np.int64) for kind, members in kinds.items()}
 
 
 def _tip_error(figure: Figure, recording: Recording) -> None:
@@ -67,22 +60,11 @@ def _clearance(figure: Figure, recording: Recording) -> None:
     _legend(figure)
 
 
-def _rates(figure: Figure, recording: Recording) -> None:
-    kinds = actuator_kinds(recording)
-    panels = figure.subplots(max(len(kinds), 1), 1, sharex=True, squeeze=False)[:, 0]
-    panels[0].set_title("Actuator rates and their limits")
-    for axes, (kind, members) in zip(panels, kinds.items(), strict=False):
-        draw_rates(axes, recording, members, kind)
-        axes.label_outer()
-        if axes.get_legend_handles_labels()[0]:
-            axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-
-
 def _solve_time(figure: Figure, recording: Recording) -> None:
     axes, histogram = figure.subplots(1, 2, sharey=True, width_ratios=(3.0, 1.0))
-    axes.set_title("Time the controller takes per step")
+    axes.set_title("Wall-clock time of the controller per step, against the control period")
     draw_solve_time(axes, recording)
-    histogram.set_xlabel("steps [%]")
+    histogram.set_xlabel("share of steps [%]")
     if not len(recording):
         note(histogram, NO_STEPS)
         return
@@ -102,4 +84,6 @@ def _legend(figure: Figure) -> None:
     """One legend above the first axes, in a row, where it hides no data."""
     handles, labels = figure.axes[0].get_legend_handles_labels()
     if handles:
-        figure.legend(handles, labels, loc="outside lower center", ncols=len(handles))
+        figure.legend(
+            handles, labels, loc="outside lower center", ncols=len(handles), columnspacing=1.3
+        )

@@ -5,9 +5,14 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import LinearSegmentedColormap, to_rgb
 from matplotlib.figure import Figure
+
+from sinuous.arrays import Array
 
 # Okabe and Ito, "Color universal design" (2008)
 BLACK = "#000000"
@@ -20,11 +25,17 @@ VERMILION = "#D55E00"
 PURPLE = "#CC79A7"
 GREY = "#8A8A8A"
 PALE = "#D9DEE3"
+PALER = "#EFF2F4"
+SLATE = "#66727F"
 
 NOMINAL = BLUE
 MEASURED = VERMILION
 LIMIT = BLACK
 CYCLE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY)
+
+# Without the last tenth of "plasma", a yellow that white paper swallows.
+TIMES = LinearSegmentedColormap.from_list("times", colormaps["plasma"](np.linspace(0.0, 0.8, 64)))
+"""Colour of a moment, from the first (0) to the last (1) of a run."""
 
 TIME_LABEL = "time [s]"
 DPI = 150
@@ -64,6 +75,11 @@ def save(path: Path, size: tuple[float, float], draw: Callable[[Figure], None]) 
         draw(figure)
         figure.savefig(path, dpi=DPI)
     return path
+
+
+def rgb(color: str) -> Array:
+    """Red, green and blue (3,), 0 to 1."""
+    return np.array(to_rgb(color))
 
 
 def note(axes: Axes, text: str) -> None:

@@ -4,7 +4,7 @@ MM_PER_M = 1e3
 MS_PER_S = 1e3
 PERCENT = 1e2
 
-UNKNOWN = "–"
+UNKNOWN = "-"
 
 
 def millimetres(value: float | None, missing: str = UNKNOWN) -> str:
@@ -18,5 +18,5 @@ def milliseconds(value: float | None, missing: str = UNKNOWN) -> str:
 
 
 def factor(value: float | None, missing: str = UNKNOWN) -> str:
-    """A ratio, as "12.3 ×"."""
-    return missing if value is None else f"{value:.3g} ×"
+    """A ratio, as "12.3 x"."""
+    return missing if value is None else f"{value:.3g} x"
