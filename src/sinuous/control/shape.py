@@ -1,8 +1,8 @@
 """Constraints on the body's shape: not linear, kept by cutting planes and the safety filter."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import dataclass, replace
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -37,6 +37,22 @@ class Cuts:
 
     def __len__(self) -> int:
         return len(self.slack)
+
+    @classmethod
+    def none(cls, coordinates: int) -> Self:
+        """No row at all, for a robot with so many coordinates."""
+        nothing = np.zeros(0, dtype=np.int64)
+        return cls(
+            jacobian=np.zeros((0, coordinates)),
+            slack=np.zeros(0),
+            source=nothing,
+            triangle=nothing,
+            normal=np.zeros((0, 3)),
+        )
+
+    def lowered(self, missed: Array) -> Self:
+        """The same rows with less slack, by what linearisation missed (m,)."""
+        return replace(self, slack=self.slack - missed)
 
     def only(self, chosen: IntArray) -> "Cuts":
         """The chosen rows."""
@@ -138,22 +154,25 @@ class BendLimit:
         return float(min(np.min(a.bend_slack), np.min(b.bend_slack)))
 
     def cuts(self, stage: Stage, contacts: Contacts) -> Cuts:
-        return self._rows(stage, np.flatnonzero(stage.bend_slack < NEAR_BEND), 0.0)
+        return self._rows(stage, np.flatnonzero(stage.bend_slack < NEAR_BEND))
 
     def violated(self, stage: Stage, found: Stage) -> Cuts:
         beyond = np.flatnonzero(found.bend_slack < self.reserve - TOLERANCE)
-        linear = stage.bend_slack + stage.robot.bend_slack_jacobian(stage.c) @ (found.c - stage.c)
-        return self._rows(stage, beyond, np.maximum(linear - found.bend_slack, 0.0)[beyond])
+        rows = self._rows(stage, beyond)
+        linear = rows.slack + self.reserve + rows.jacobian @ (found.c - stage.c)
+        return rows.lowered(np.maximum(linear - found.bend_slack[rows.source], 0.0))
 
     def describe(self, stage: Stage, source: int, triangle: int) -> str:
         return f"{stage.robot.bend_names[source]} at its limit"
 
-    def _rows(self, stage: Stage, which: IntArray, missed: Array | float) -> Cuts:
-        """Tangents of some limits, lowered by what linearisation missed."""
+    def _rows(self, stage: Stage, which: IntArray) -> Cuts:
+        """Tangents of some limits."""
+        if not len(which):
+            return Cuts.none(len(stage.c))
         A = stage.robot.bend_slack_jacobian(stage.c)[which]
         rows = Cuts(
             jacobian=A,
-            slack=stage.bend_slack[which] - self.reserve - missed,
+            slack=stage.bend_slack[which] - self.reserve,
             source=which,
             triangle=np.full(len(which), -1, dtype=np.int64),
             normal=np.zeros((len(which), 3)),

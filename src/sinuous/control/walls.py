@@ -68,15 +68,15 @@ class Walls:
         planes = self._planes(stage, beyond, found.walls.triangle[beyond])
         linear = planes.slack + planes.jacobian @ (found.c - stage.c)
         exact = (found.walls.clearance - self.required)[planes.source] - self.reserve
-        missed = np.maximum(linear - exact, 0.0)
-        return Cuts(jacobian=planes.jacobian, slack=planes.slack - missed, source=planes.source,
-                    triangle=planes.triangle, normal=planes.normal)  # fmt: skip
+        return planes.lowered(np.maximum(linear - exact, 0.0))
 
     def describe(self, stage: Stage, source: int, triangle: int) -> str:
         wall = stage.zone.describe_triangle(triangle)
         return f"{wall} at {stage.robot.point_name(source)}"
 
     def _planes(self, stage: Stage, points: IntArray, triangles: IntArray) -> Cuts:
+        if not len(points):
+            return Cuts.none(len(stage.c))
         near = stage.walls
         count = len(points)
         A, slack = np.empty((count, len(stage.c))), np.empty(count)
