@@ -6,14 +6,8 @@ import pytest
 from sinuous.control.mpc import ShapeConstrainedMPC
 from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
-from sinuous.robots.pcc import (
-    CableConvention,
-    Insertion,
-    PccRobot,
-    Segment,
-    SpeedLimits,
-    Tool,
-)
+from sinuous.robots.parts import CableConvention, Insertion, Segment, SpeedLimits, Tool
+from sinuous.robots.pcc import PccRobot
 
 from .loops import assert_limits_kept, drive
 

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from sinuous.arrays import Array
-from sinuous.robots.pcc import CableConvention, Insertion, PccRobot, Segment, SpeedLimits, Tool
+from sinuous.robots.parts import CableConvention, Insertion, Segment, SpeedLimits, Tool
+from sinuous.robots.pcc import PccRobot
 
 # Least ratio of the singular values of a segment's cable offsets. Files allow 1e-3; with more,
 # rounding is amplified little and tolerances can be tight.

@@ -9,7 +9,8 @@ from scipy.linalg import block_diag, expm
 
 from sinuous.arrays import Array
 from sinuous.robots import pcc_kernels
-from sinuous.robots.pcc import CableConvention, Insertion, PccRobot, Segment, SpeedLimits, Tool
+from sinuous.robots.parts import CableConvention, Insertion, Segment, SpeedLimits, Tool
+from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import load_robot
 
 from .random_robots import configurations, random_pose, robots, seeds

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sinuous.arrays import Array
-from sinuous.robots.pcc import CableConvention, PccRobot
+from sinuous.robots.parts import CableConvention
+from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import load_robot
 
 from .random_robots import configurations, robots, seeds

@@ -10,7 +10,8 @@ import pytest
 
 from sinuous.errors import InputError
 from sinuous.files import build, override, read_toml
-from sinuous.robots.pcc import CableConvention, Insertion, PccRobot, Tool
+from sinuous.robots.parts import CableConvention, Insertion, Tool
+from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import PRESETS, load_robot, preset_names
 from sinuous.robots.robot_tables import RobotTable
 

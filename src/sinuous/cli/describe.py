@@ -9,7 +9,8 @@ from sinuous.cli.table import Rows
 from sinuous.files import read_path_csv, read_toml
 from sinuous.geometry.mesh import check_mesh
 from sinuous.recording import read
-from sinuous.robots.pcc import PccRobot, Segment
+from sinuous.robots.parts import Segment
+from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import load_robot
 from sinuous.scenario import load_scenario
 from sinuous.scenario.start import check_start, movable

@@ -6,104 +6,21 @@ sin s_m), so the cable-sum rule (19) holds for every configuration and a straigh
 (theta = 0) is an ordinary point.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from enum import Enum
 from functools import cached_property
-from math import ceil, hypot
+from math import hypot
 from typing import Self
 
 import numpy as np
 
 from sinuous.arrays import Array, ArrayLike, IntArray
 from sinuous.robots import pcc_kernels
-from sinuous.robots.pcc_kernels import Chain
+from sinuous.robots.body import Body, Section
+from sinuous.robots.parts import CableConvention, Insertion, Segment, SpeedLimits, Tool
 
 # Bends smaller than this have no direction worth naming: the slack's gradient ignores them.
 STRAIGHT = 1e-9
-
-
-class CableConvention(Enum):
-    """Where a cable's length is counted."""
-
-    SEGMENT = "segment"  # inside its own segment, as paper B does
-    MOTOR = "motor"  # from the robot's base, through all proximal segments
-
-
-@dataclass(frozen=True, kw_only=True)
-class Segment:
-    """One bending segment."""
-
-    length: tuple[float, float]  # shortest and longest backbone [m]; equal: fixed length
-    home_length: float  # [m]
-    disks: int
-    cable_angles: tuple[float, ...]  # of the holes about local z [rad], three or more
-    pitch_radii: tuple[float, ...]  # from the backbone to each cable [m]
-    body_radius: float  # [m]
-    disk_thickness: float  # [m]
-    max_curvature: float  # [1/m], inf if only the disks limit it
-    cable_length: tuple[float, float]  # shortest and longest, in the robot's convention [m]
-
-    @property
-    def extensible(self) -> bool:
-        """Whether the backbone is an actuator."""
-        return self.length[0] < self.length[1]
-
-    @property
-    def holes(self) -> Array:
-        """Offsets (m, 2) of the cables from the backbone [m]."""
-        angles, radii = np.array(self.cable_angles), np.array(self.pitch_radii)
-        return radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-
-    @property
-    def bend_planes(self) -> Array:
-        """Rows (slope, offset) of the largest bend |theta| <= slope gamma + offset [rad].
-
-        The first is the stated curvature limit, the second the disks touching on the inner
-        side: kappa = (1 - t / h) / rho with the spacing h = gamma / n (paper B eq. 20).
-        """
-        touching = (1.0 / self.body_radius, -self.disks * self.disk_thickness / self.body_radius)
-        stated = [(self.max_curvature, 0.0)] if np.isfinite(self.max_curvature) else []
-        return np.array([*stated, touching])
-
-
-@dataclass(frozen=True, kw_only=True)
-class Insertion:
-    """A stage that pushes the robot's base along its z axis on a straight shaft."""
-
-    travel: tuple[float, float]  # [m]
-    home: float  # [m]
-    radius: float  # of the shaft [m]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Tool:
-    """A rigid tool or sensor whose end is the tip."""
-
-    offset: tuple[float, float, float]  # from the last disk, in its frame [m]
-    radius: float  # [m]
-
-
-@dataclass(frozen=True, kw_only=True)
-class SpeedLimits:
-    """Largest actuator speeds [m/s], the same in both directions."""
-
-    cable: float
-    backbone: float
-    insertion: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Section:
-    """A stretch of the body: where its coordinates stand and how finely it is guarded."""
-
-    theta: int  # column of theta_x, -1: straight
-    gamma: int  # column of the length, -1: fixed
-    longest: float  # [m]
-    direction: tuple[float, float, float]
-    radius: float  # [m]
-    disks: int
-    pieces: int  # arcs between guarded points, a multiple of the disks
-    curvature: float  # largest [1/m]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -258,102 +175,61 @@ class PccRobot:
     # --- body ----------------------------------------------------------------------------
 
     @cached_property
-    def _sections(self) -> list[_Section]:
-        sections = list[_Section]()
+    def _body(self) -> Body:
+        return Body(sections=tuple(self._sections()), spacing=self.spacing)
 
-        def add(
-            longest: float,
-            radius: float,
-            disks: int,
-            curvature: float = 0.0,
-            theta: int = -1,
-            gamma: int = -1,
-            direction: tuple[float, float, float] = (0.0, 0.0, 1.0),
-        ) -> None:
-            pieces = disks * max(1, ceil(longest / disks / self.spacing - 1e-9))
-            sections.append(_Section(theta=theta, gamma=gamma, longest=longest, radius=radius,
-                                     disks=disks, pieces=pieces, curvature=curvature,
-                                     direction=direction))  # fmt: skip
-
+    def _sections(self) -> Iterator[Section]:
         if self.insertion:
-            add(max(map(abs, self.insertion.travel)), self.insertion.radius, 1, gamma=0)
-        for segment, (theta, gamma) in zip(self.segments, self._columns, strict=True):
-            slope, offset = segment.bend_planes.T
-            curvature = float(np.min(slope + offset / segment.length[1]))
-            longest = segment.length[1] if gamma >= 0 else segment.home_length
-            add(longest, segment.body_radius, segment.disks, curvature, theta, gamma)
-        if self.tool and hypot(*self.tool.offset) > 0.0:
-            reach = hypot(*self.tool.offset)
+            reach = max(map(abs, self.insertion.travel))
+            yield Section(name="the insertion shaft", longest=reach, radius=self.insertion.radius,
+                          gamma=0)  # fmt: skip
+        columns = zip(self.segments, self._columns, strict=True)
+        for j, (segment, (theta, gamma)) in enumerate(columns, 1):
+            yield Section(
+                name=f"segment {j}",
+                longest=segment.length[1] if gamma >= 0 else segment.home_length,
+                radius=segment.body_radius,
+                disks=segment.disks,
+                curvature=segment.largest_curvature,
+                theta=theta,
+                gamma=gamma,
+            )
+        if self.tool and (reach := hypot(*self.tool.offset)) > 0.0:
             x, y, z = (value / reach for value in self.tool.offset)
-            add(reach, self.tool.radius, 1, direction=(x, y, z))
-        return sections
+            yield Section(
+                name="the tool", longest=reach, radius=self.tool.radius, direction=(x, y, z)
+            )
 
-    @cached_property
-    def _chain(self) -> Chain:
-        sections = self._sections
-        section = np.concatenate([[0], *([m] * s.pieces for m, s in enumerate(sections))])
-        steps = [np.arange(1, s.pieces + 1) / s.pieces for s in sections]
-        return Chain(
-            theta_column=np.array([s.theta for s in sections]),
-            gamma_column=np.array([s.gamma for s in sections]),
-            fixed_length=np.array([s.longest for s in sections]),
-            direction=np.array([s.direction for s in sections]),
-            section=section.astype(np.int64),
-            fraction=np.concatenate([[0.0], *steps]),
-        )
-
-    @cached_property
+    @property
     def radii(self) -> Array:
-        """Body radius [m] (S,); where two sections meet, the larger one."""
-        first = [self._sections[0].radius]
-        radii = np.concatenate([first, *([s.radius] * s.pieces for s in self._sections)])
-        return self._worse_at_joints(radii)
+        """Body radius [m] (S,) at the guarded points."""
+        return self._body.radii
 
-    @cached_property
+    @property
     def disk_indices(self) -> IntArray:
-        indices, start = list[int](), 0
-        for s in self._sections:
-            if s.theta >= 0:
-                indices += range(start + s.pieces // s.disks, start + s.pieces + 1,
-                                 s.pieces // s.disks)  # fmt: skip
-            start += s.pieces
-        return np.array(indices, dtype=np.int64)
+        """Which of the guarded points are disks (D,)."""
+        return self._body.disk_indices
 
     def required_distance(self, margin: float) -> Array:
-        """Distance [m] (S,) of the guarded points that keeps the whole body at the margin.
+        """Distance [m] (S,) of the guarded points that keeps the whole body at the margin."""
+        return self._body.required_distance(margin)
 
-        Between two points an arc of length D and curvature k stays within the balls of
-        radius sqrt((rho + margin)^2 + (D/2)^2) + k D^2 / 8 around them (notes B7).
-        """
-        arcs = [(s.longest / s.pieces, s.curvature, s.pieces) for s in self._sections]
-        half = np.concatenate([[arcs[0][0] / 2], *([d / 2] * count for d, _, count in arcs)])
-        sagitta = np.concatenate(
-            [[arcs[0][1] * arcs[0][0] ** 2 / 8],
-             *([k * d * d / 8] * count for d, k, count in arcs)]
-        )  # fmt: skip
-        half, sagitta = self._worse_at_joints(half), self._worse_at_joints(sagitta)
-        return np.hypot(self.radii + margin, half) + sagitta
-
-    def _worse_at_joints(self, values: Array) -> Array:
-        """Where two sections meet, the larger value of the two (S,)."""
-        worse, joint = values.copy(), 0
-        for s in self._sections[:-1]:
-            joint += s.pieces
-            worse[joint] = max(values[joint], values[joint + 1])
-        return worse
+    def point_name(self, index: int) -> str:
+        """Where on the body a guarded point lies, in words."""
+        return self._body.point_name(index)
 
     def points(self, c: ArrayLike) -> Array:
         """Guarded points (..., S, 3) in the world frame [m], the base first, the tip last."""
         flat, shape = self._flat(c)
         out = np.empty((len(flat), len(self.radii), 3))
-        pcc_kernels.points_batch(self._chain, self.T_w_b, flat, out)
+        pcc_kernels.points_batch(self._body.chain, self.T_w_b, flat, out)
         return out.reshape(*shape, *out.shape[1:])
 
     def points_jacobian(self, c: ArrayLike) -> Array:
         """Derivative (..., S, 3, n) of the points by the configuration, analytic."""
         flat, shape = self._flat(c)
         out = np.empty((len(flat), len(self.radii), 3, flat.shape[1]))
-        pcc_kernels.points_jacobian_batch(self._chain, self.T_w_b, flat, out)
+        pcc_kernels.points_jacobian_batch(self._body.chain, self.T_w_b, flat, out)
         return out.reshape(*shape, *out.shape[1:])
 
     def tip(self, c: ArrayLike) -> Array:
@@ -363,11 +239,11 @@ class PccRobot:
     def tip_pose(self, c: ArrayLike) -> Array:
         """Tip pose T_w_t (..., 4, 4): at the tool's end, oriented like the last disk."""
         flat, shape = self._flat(c)
-        sections = len(self._sections)
+        sections = len(self._body.sections)
         T = np.tile(np.eye(4), (len(flat), 1, 1))
         R, p = np.empty((sections + 1, 3, 3)), np.empty((sections + 1, 3))
         for pose, one in zip(T, flat, strict=True):
-            pcc_kernels.frames(self._chain, self.T_w_b, one, R, p)
+            pcc_kernels.frames(self._body.chain, self.T_w_b, one, R, p)
             pose[:3, :3], pose[:3, 3] = R[-1], p[-1]
         return T.reshape(*shape, 4, 4)
 
@@ -379,18 +255,8 @@ class PccRobot:
         """
         value = np.asarray(c, dtype=float)
         out = np.empty((len(value), len(value)))
-        pcc_kernels.curvature(self._chain, self.T_w_b, value, forces, out)
+        pcc_kernels.curvature(self._body.chain, self.T_w_b, value, forces, out)
         return out
-
-    def point_name(self, index: int) -> str:
-        """Where on the body a guarded point lies, in words."""
-        section = self._sections[self._chain.section[index]]
-        part = "the tool"
-        if section.theta >= 0:
-            part = f"segment {[theta for theta, _ in self._columns].index(section.theta) + 1}"
-        elif section.gamma == 0 and self.insertion:
-            part = "the insertion shaft"
-        return f"{self._chain.fraction[index]:.0%} of {part}"
 
     def _flat(self, c: ArrayLike) -> tuple[Array, tuple[int, ...]]:
         value = np.asarray(c, dtype=float)

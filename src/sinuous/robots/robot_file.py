@@ -7,7 +7,8 @@ from pathlib import Path
 
 from sinuous.errors import InputError
 from sinuous.files import build, did_you_mean, read_toml
-from sinuous.robots.pcc import Insertion, PccRobot, Segment, SpeedLimits, Tool
+from sinuous.robots.parts import Insertion, Segment, SpeedLimits, Tool
+from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_tables import LimitsTable, RobotTable, SegmentTable
 
 PRESETS = Path(__file__).parent / "presets"

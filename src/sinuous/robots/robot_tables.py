@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from sinuous.files import Angle, Curvature, FieldError, Length, Place, Speed
-from sinuous.robots.pcc import CableConvention
+from sinuous.robots.parts import CableConvention
 
 # Least ratio of the singular values of a segment's cable offsets: below it the bend across
 # the cables' common plane would be read from length differences under a thousandth of it.
