@@ -181,7 +181,7 @@ def test_violations_count_between_steps_too(scenario: sn.Scenario) -> None:
     before[0], after[0] = 0.4, -0.4  # it nods to both sides; in the middle it is straight
     ball = sn.shapes.sphere(0.005, centre=[0.0, 0.0, 0.1145])
     free = sn.SafeZone.unbounded().minus(ball, name="ball")
-    judge = SurfaceClearance.of(robot, free, before)
+    judge = SurfaceClearance.of(robot, free)
     ends = [float(np.min(free.clearance(robot.points(c)) - robot.radii)) for c in (before, after)]
     assert judge.least(before, after) < min(ends) - SEEN
 
@@ -189,14 +189,14 @@ def test_violations_count_between_steps_too(scenario: sn.Scenario) -> None:
 def test_the_surface_is_judged_exactly(scenario: sn.Scenario) -> None:
     """Leaving out points that cannot be the closest changes nothing."""
     robot, zone = scenario.robot, scenario.zone
-    judge = SurfaceClearance.of(robot, zone, robot.home)
+    judge = SurfaceClearance.of(robot, zone)
     fine = judge.robot
     rng = np.random.default_rng(0)
     for _ in range(20):
         a, b = robot.home + rng.normal(0.0, [0.2, 0.2, 0.005], (2, 3))
         shapes = a + np.linspace(0.2, 1.0, 5)[:, None] * (b - a)
         clearance = zone.clearance(fine.points(shapes)) - fine.radii
-        assert judge.least(a, b) == clearance[:, judge.judged].min()
+        assert judge.least(a, b) == clearance[:, fine.movable].min()
     arcs = np.linalg.norm(np.diff(fine.points(robot.home), axis=0), axis=1)
     assert np.all(arcs <= SPACING)
 

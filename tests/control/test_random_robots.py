@@ -1,5 +1,7 @@
 """Any robot: the promise does not depend on how it is built."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.parts import CableConvention, Insertion, Segment, SpeedLimits, Tool
 from sinuous.robots.pcc import PccRobot
+from sinuous.robots.robot_file import load_robot
 
 from .loops import assert_limits_kept, drive
 
@@ -76,3 +79,21 @@ def test_random_robots_keep_margins_and_limits_in_random_tubes(seed: int) -> Non
     assert judged.worst_margin >= 0.0
     assert judged.holds == 0
     assert_limits_kept(judged)
+
+
+def test_segments_keep_their_own_length_where_actuators_count_from_the_motor() -> None:
+    # The limits of lengths from the base would let one segment grow while another shrinks.
+    robot = load_robot("hachen2025")
+    robot = replace(robot, convention=CableConvention.MOTOR, segments=tuple(
+        replace(segment, cable_length=(0.0, 0.4)) for segment in robot.segments))  # fmt: skip
+    mpc = ShapeConstrainedMPC(robot, SafeZone.unbounded())
+    state, lengths = mpc.init(robot.home), list[float]()
+    for target, steps in (([0.0, 0.0, 0.05], 250), ([0.0, 0.0, 0.5], 500)):
+        for _ in range(steps):
+            state, command = mpc.step(state, target)
+            lengths += list(state.c[2::3])
+            assert np.all(np.abs(command.rates) <= robot.rate_limits[:, 1] * (1.0 + 1e-12))
+    assert min(lengths) >= 0.04 - 1e-12
+    assert max(lengths) <= 0.09 + 1e-12
+    assert min(lengths) < 0.041  # both limits were met
+    assert max(lengths) > 0.089

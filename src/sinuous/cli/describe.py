@@ -13,7 +13,7 @@ from sinuous.robots.parts import Segment
 from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import load_robot
 from sinuous.scenario import load_scenario
-from sinuous.scenario.start import check_start, movable
+from sinuous.scenario.start import check_start
 from sinuous.summary import summarise
 from sinuous.view.summary_table import summary_rows
 from sinuous.view.units import MM_PER_M, MS_PER_S
@@ -99,7 +99,7 @@ def scenario(path: Path, overrides: list[str]) -> Rows:
     check_start(found)
     mpc = found.mpc
     start = mpc.stage(found.first_configuration)
-    room = (start.walls.clearance - found.robot.radii)[movable(start)]
+    room = (start.walls.clearance - found.robot.radii)[found.robot.movable]
     targets = np.array([leg.at(leg.moving) for leg in found.path])
     steps = sum(leg.steps(mpc.dt) for leg in found.path)
     return [

@@ -17,7 +17,7 @@ from sinuous.session.folder import FIGURES
 from sinuous.view import print_summary, save_figures
 
 PATIENCE = 3.0  # [s] after which a user wants to know what takes so long
-COMPILING = "Still preparing: the first run on a machine compiles the inner loops, about a minute."
+COMPILING = "Still preparing: the first run on a machine compiles the inner loops, half a minute."
 CODES = {End.FINISHED: GOOD, End.INTERRUPTED: INTERRUPTED, End.PLANT_FAILED: NEGATIVE}
 
 

@@ -122,9 +122,8 @@ class ShapeConstrainedMPC:
     @cached_property
     def walls(self) -> Walls:
         """The constraint that keeps the body off the walls."""
-        movable = np.any(self.robot.points_jacobian(self.robot.home) != 0.0, axis=(1, 2))
         required = self.robot.required_distance(self.margin)
-        return Walls(required=required, movable=movable, reserve=RESERVE)
+        return Walls(required=required, movable=self.robot.movable, reserve=RESERVE)
 
     @cached_property
     def terms(self) -> Terms:

@@ -169,20 +169,30 @@ class ActuatorLengths:
     trust: float
 
     def rows(self, stage: Stage) -> Rows:
-        limits = stage.robot.length_limits
-        # A prediction that is out of limits by rounding must not make the problem infeasible.
-        lower = np.minimum(limits[:, 0] - stage.lengths, 0.0)
-        upper = np.maximum(limits[:, 1] - stage.lengths, 0.0)
+        robot = stage.robot
+        lower, upper = _room(robot.length_limits, stage.lengths)
         limited = (lower > -self.trust) | (upper < self.trust)
+        own = np.flatnonzero(np.any(np.isfinite(robot.coordinate_limits), axis=1))
+        least, most = _room(robot.coordinate_limits[own], stage.c[own])
+        names = [
+            f"{name} at its length limit" if near else ""
+            for name, near in zip(robot.actuator_names, limited, strict=True)
+        ]
+        names += [f"{robot.coordinate_names[k]} at its limit" for k in own]
         return Rows(
-            jacobian=stage.robot.lengths_jacobian(stage.c),
-            lower=np.maximum(lower, -self.trust),
-            upper=np.minimum(upper, self.trust),
-            names=tuple(
-                f"{name} at its length limit" if near else ""
-                for name, near in zip(stage.robot.actuator_names, limited, strict=True)
-            ),
+            jacobian=np.concatenate([robot.lengths_jacobian(stage.c), np.eye(len(stage.c))[own]]),
+            lower=np.concatenate([np.maximum(lower, -self.trust), least]),
+            upper=np.concatenate([np.minimum(upper, self.trust), most]),
+            names=tuple(names),
         )
+
+
+def _room(limits: Array, values: Array) -> tuple[Array, Array]:
+    """Changes that keep values within limits (k, 2).
+
+    A prediction that is out of limits by rounding must not make the problem infeasible.
+    """
+    return np.minimum(limits[:, 0] - values, 0.0), np.maximum(limits[:, 1] - values, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)

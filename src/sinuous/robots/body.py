@@ -10,7 +10,7 @@ from math import ceil
 
 import numpy as np
 
-from sinuous.arrays import Array, IntArray
+from sinuous.arrays import Array, BoolArray, IntArray
 from sinuous.robots.pcc_kernels import Chain
 
 # A section this little longer than a whole number of spacings is not cut once more.
@@ -70,6 +70,11 @@ class Body:
             section=np.concatenate([[0], owner]).astype(np.int64),
             fraction=np.concatenate([[0.0], *steps]),
         )
+
+    @cached_property
+    def movable(self) -> BoolArray:
+        """Which points any actuator can move (S,): all but the first."""
+        return np.arange(1 + sum(self.pieces)) > 0
 
     @cached_property
     def radii(self) -> Array:

@@ -14,9 +14,10 @@ from typing import Self
 
 import numpy as np
 
-from sinuous.arrays import Array, ArrayLike, IntArray
+from sinuous.arrays import Array, ArrayLike, BoolArray, IntArray
 from sinuous.robots import pcc_kernels
 from sinuous.robots.body import Body, Section
+from sinuous.robots.layout import Layout
 from sinuous.robots.parts import CableConvention, Insertion, Segment, SpeedLimits, Tool
 
 # Bends smaller than this have no direction worth naming: the slack's gradient ignores them.
@@ -52,102 +53,57 @@ class PccRobot:
     # --- coordinates and actuators -------------------------------------------------------
 
     @cached_property
-    def _columns(self) -> list[tuple[int, int]]:
-        """Columns (theta_x, gamma or -1) of every segment."""
-        column, columns = (1 if self.insertion else 0), list[tuple[int, int]]()
-        for segment in self.segments:
-            columns.append((column, column + 2 if segment.extensible else -1))
-            column += 3 if segment.extensible else 2
-        return columns
-
-    @cached_property
-    def coordinate_names(self) -> tuple[str, ...]:
-        names = ["insertion"] if self.insertion else []
-        for j, segment in enumerate(self.segments, 1):
-            names += [f"segment {j} theta_x", f"segment {j} theta_y"]
-            names += [f"segment {j} length"] if segment.extensible else []
-        return tuple(names)
-
-    @cached_property
-    def actuator_names(self) -> tuple[str, ...]:
-        names = ["insertion"] if self.insertion else []
-        for j, segment in enumerate(self.segments, 1):
-            names += [f"segment {j} cable {m}" for m in range(1, len(segment.cable_angles) + 1)]
-            names += [f"segment {j} backbone"] if segment.extensible else []
-        return tuple(names)
-
-    @cached_property
-    def bend_names(self) -> tuple[str, ...]:
-        return tuple(
-            f"segment {j} {'bend' if row == len(s.bend_planes) - 1 else 'curvature'}"
-            for j, s in enumerate(self.segments, 1)
-            for row in range(len(s.bend_planes))
+    def _layout(self) -> Layout:
+        return Layout(
+            segments=self.segments,
+            speed=self.speed,
+            convention=self.convention,
+            insertion=self.insertion,
         )
 
-    @cached_property
+    @property
+    def coordinate_names(self) -> tuple[str, ...]:
+        """Names of the coordinates (n,)."""
+        return self._layout.coordinate_names
+
+    @property
+    def actuator_names(self) -> tuple[str, ...]:
+        """Names of the actuators (P,)."""
+        return self._layout.actuator_names
+
+    @property
+    def bend_names(self) -> tuple[str, ...]:
+        """Names of the bend limits (J,)."""
+        return self._layout.bend_names
+
+    @property
     def home(self) -> Array:
-        c = np.zeros(len(self.coordinate_names))
-        if self.insertion:
-            c[0] = self.insertion.home
-        for segment, (_, gamma) in zip(self.segments, self._columns, strict=True):
-            if gamma >= 0:
-                c[gamma] = segment.home_length
-        return c
+        """Configuration (n,) to start from."""
+        return self._layout.home
 
-    @cached_property
+    @property
     def rate_limits(self) -> Array:
-        fastest = [self.speed.insertion] if self.insertion else []
-        for segment in self.segments:
-            fastest += [self.speed.cable] * len(segment.cable_angles)
-            fastest += [self.speed.backbone] if segment.extensible else []
-        return np.stack([-np.array(fastest), np.array(fastest)], axis=1)
+        """Slowest and fastest actuator rates [m/s] (P, 2)."""
+        return self._layout.rate_limits
 
-    @cached_property
+    @property
     def length_limits(self) -> Array:
-        limits = [self.insertion.travel] if self.insertion else []
-        shortest, longest = 0.0, 0.0
-        for segment in self.segments:
-            if self.convention is CableConvention.SEGMENT:
-                shortest, longest = 0.0, 0.0
-            shortest, longest = shortest + segment.length[0], longest + segment.length[1]
-            limits += [segment.cable_length] * len(segment.cable_angles)
-            limits += [(shortest, longest)] if segment.extensible else []
-        return np.array(limits)
+        """Shortest and longest actuator lengths [m] (P, 2)."""
+        return self._layout.length_limits
 
-    # --- actuator lengths ----------------------------------------------------------------
-
-    @cached_property
-    def _length_map(self) -> tuple[Array, Array]:
-        """A (P, n) and b (P,) with lengths = A c + b."""
-        A = np.zeros((len(self.actuator_names), len(self.coordinate_names)))
-        b = np.zeros(len(self.actuator_names))
-        row = 0
-        if self.insertion:
-            A[0, 0] = 1.0
-            row = 1
-        for j, segment in enumerate(self.segments):
-            first = 0 if self.convention is CableConvention.MOTOR else j
-            holes = segment.holes
-            backbone = row + len(holes)
-            rows = slice(row, backbone + (1 if segment.extensible else 0))
-            for passed in range(first, j + 1):
-                theta, gamma = self._columns[passed]
-                A[row:backbone, theta : theta + 2] -= holes
-                if gamma >= 0:
-                    A[rows, gamma] += 1.0
-                else:
-                    b[rows] += self.segments[passed].home_length
-            row = rows.stop
-        return A, b
+    @property
+    def coordinate_limits(self) -> Array:
+        """Limits of the coordinates (n, 2) that no actuator's limits imply."""
+        return self._layout.coordinate_limits
 
     def lengths(self, c: ArrayLike) -> Array:
         """Actuator lengths (..., P) [m] of configurations (..., n), paper B eq. (1), (19)."""
-        A, b = self._length_map
+        A, b = self._layout.length_map
         return np.asarray(c, dtype=float) @ A.T + b
 
     def lengths_jacobian(self, c: ArrayLike) -> Array:
         """Derivative (P, n) of the lengths; constant, because they are affine in c."""
-        return self._length_map[0]
+        return self._layout.length_map[0]
 
     def configuration(self, lengths: ArrayLike) -> Array:
         """Configuration (..., n) of actuator lengths (..., P).
@@ -157,12 +113,12 @@ class PccRobot:
         """
         q = np.asarray(lengths, dtype=float)
         c = np.zeros((*q.shape[:-1], len(self.coordinate_names)))
-        A, b = self._length_map
+        A, b = self._layout.length_map
         row = 0
         if self.insertion:
             c[..., 0] = q[..., 0]
             row = 1
-        for segment, (theta, gamma) in zip(self.segments, self._columns, strict=True):
+        for segment, (theta, gamma) in zip(self.segments, self._layout.columns, strict=True):
             cables = slice(row, row + len(segment.cable_angles))
             row = cables.stop
             if gamma >= 0:
@@ -183,7 +139,7 @@ class PccRobot:
             reach = max(map(abs, self.insertion.travel))
             yield Section(name="the insertion shaft", longest=reach, radius=self.insertion.radius,
                           gamma=0)  # fmt: skip
-        columns = zip(self.segments, self._columns, strict=True)
+        columns = zip(self.segments, self._layout.columns, strict=True)
         for j, (segment, (theta, gamma)) in enumerate(columns, 1):
             yield Section(
                 name=f"segment {j}",
@@ -199,6 +155,11 @@ class PccRobot:
             yield Section(
                 name="the tool", longest=reach, radius=self.tool.radius, direction=(x, y, z)
             )
+
+    @property
+    def movable(self) -> BoolArray:
+        """Which guarded points any actuator can move (S,): all but the fixed base."""
+        return self._body.movable
 
     @property
     def radii(self) -> Array:
@@ -268,7 +229,7 @@ class PccRobot:
     def _bend_limits(self) -> tuple[IntArray, Array, Array, Array]:
         """Column of theta_x, map (J, n) and offset (J,) of the largest bend, pitch radius."""
         thetas, slopes, offsets, pitches = list[int](), list[Array](), list[float](), list[float]()
-        for segment, (theta, gamma) in zip(self.segments, self._columns, strict=True):
+        for segment, (theta, gamma) in zip(self.segments, self._layout.columns, strict=True):
             for slope, offset in segment.bend_planes:
                 row = np.zeros(len(self.coordinate_names))
                 if gamma >= 0:

@@ -2,7 +2,7 @@
 
 from typing import Protocol, Self
 
-from sinuous.arrays import Array, ArrayLike, IntArray
+from sinuous.arrays import Array, ArrayLike, BoolArray, IntArray
 
 
 class Robot(Protocol):
@@ -30,6 +30,11 @@ class Robot(Protocol):
         ...
 
     @property
+    def movable(self) -> BoolArray:
+        """Which guarded points any actuator can move (S,)."""
+        ...
+
+    @property
     def disk_indices(self) -> IntArray:
         """Which of the guarded points are disks (D,)."""
         ...
@@ -45,10 +50,19 @@ class Robot(Protocol):
         ...
 
     @property
+    def coordinate_limits(self) -> Array:
+        """Limits of the coordinates (n, 2) that no actuator's limits imply, else infinite."""
+        ...
+
+    @property
     def bend_names(self) -> tuple[str, ...]: ...
 
     def at(self, T_w_b: ArrayLike) -> Self:
         """The same robot with its base at T_w_b (4, 4)."""
+        ...
+
+    def sampled(self, spacing: float) -> Self:
+        """The same robot with its body guarded every `spacing` [m]."""
         ...
 
     def points(self, c: ArrayLike) -> Array:

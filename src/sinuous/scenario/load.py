@@ -18,7 +18,6 @@ from sinuous.geometry.mesh import read_mesh
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.plants.kinematic import Disturbance
 from sinuous.robots.pcc import PccRobot
-from sinuous.robots.robot import Robot
 from sinuous.robots.robot_file import load_robot, preset_names, robot_path
 from sinuous.scenario.path import Leg, timed_path, waypoints
 from sinuous.scenario.scenario import Scenario
@@ -58,7 +57,7 @@ def load_scenario(path: str | Path, *, set: Iterable[str] = ()) -> Scenario:
     source = _Source(file=str(path), folder=Path(path).parent)
     robot = source.robot(table.robot)
     mpc = ShapeConstrainedMPC(
-        cast(Robot, robot),  # its cached properties are more than the protocol's plain ones
+        robot,
         source.zone(table.zone),
         margin=table.mpc.margin,
         dt=1.0 / table.mpc.rate,

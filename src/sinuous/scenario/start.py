@@ -2,18 +2,11 @@
 
 import numpy as np
 
-from sinuous.arrays import BoolArray
 from sinuous.control.stage import Stage
-from sinuous.control.walls import IMMOVABLE
 from sinuous.errors import InputError
 from sinuous.scenario.scenario import Scenario
 
 MM_PER_M = 1e3  # messages speak of millimetres
-
-
-def movable(stage: Stage) -> BoolArray:
-    """Which body points (S,) the actuators can move at all; the others are no one's fault."""
-    return np.any(np.abs(stage.jacobian) > IMMOVABLE, axis=(1, 2))
 
 
 def check_start(scenario: Scenario) -> None:
@@ -24,7 +17,8 @@ def check_start(scenario: Scenario) -> None:
     """
     stage = scenario.mpc.stage(scenario.first_configuration)
     _check_bend(scenario, stage)
-    slack = np.where(movable(stage), stage.walls.clearance - scenario.mpc.walls.required, np.inf)
+    walls = scenario.mpc.walls
+    slack = np.where(walls.movable, stage.walls.clearance - walls.required, np.inf)
     worst = int(np.argmin(slack))
     if slack[worst] >= 0.0 or scenario.recover:
         return

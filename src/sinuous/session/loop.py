@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sinuous.arrays import Array, BoolArray
+from sinuous.arrays import Array
 from sinuous.control.report import Command
 from sinuous.plants.plant import Measurement
 from sinuous.recording import Sample, status_name
@@ -30,7 +30,7 @@ def steps(scenario: Scenario) -> Iterator[Sample]:
         PlantFailure: if the plant measures something that is not a finite number
     """
     mpc, plant = scenario.mpc, scenario.new_plant()
-    surface = SurfaceClearance.of(scenario.robot, scenario.zone, scenario.first_configuration)
+    surface = SurfaceClearance.of(scenario.robot, scenario.zone)
     state, count = mpc.init(scenario.first_configuration), 0
     for leg in scenario.path:
         rest = Rest(mpc.dt)
@@ -49,7 +49,6 @@ def steps(scenario: Scenario) -> Iterator[Sample]:
                 command=command,
                 measured=measured,
                 clearance=surface.least(before, state.c),
-                movable=surface.guarded,
             )
             if rest.after(command.report.points) and step * mpc.dt >= leg.moving:
                 break
@@ -90,7 +89,6 @@ def _sample(
     command: Command,
     measured: Measurement,
     clearance: float,
-    movable: BoolArray,
 ) -> Sample:
     robot, report = scenario.robot, command.report
     return Sample(
@@ -105,7 +103,7 @@ def _sample(
         measured_points=measured.points,
         measured_tip=measured.tip,
         measured_lengths=measured.lengths,
-        actual_clearance=least_clearance(scenario.zone, measured.points, robot.radii, movable),
+        actual_clearance=least_clearance(scenario.zone, robot, measured.points),
         status=status_name(report.status),
         solve_time=report.solve_time,
         iterations=report.iterations,

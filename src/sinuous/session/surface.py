@@ -1,38 +1,26 @@
 """Clearance of the whole body surface during a step, independent of the controller's points."""
 
 from dataclasses import dataclass
-from typing import Protocol, Self, cast
+from typing import Self
 
 import numpy as np
 
-from sinuous.arrays import Array, BoolArray
-from sinuous.control.stage import Stage
+from sinuous.arrays import Array
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.robot import Robot
-from sinuous.scenario.start import movable
 
 SPACING = 0.00025  # of the points on the backbone at which the surface is judged [m]
 SHAPES = 5  # looked at for each step: four on the way and the last
 COARSE = 12  # every so many points are queried first
 
 
-class Sampled(Robot, Protocol):
-    """A robot whose body can be sampled more finely."""
+def least_clearance(zone: SafeZone, robot: Robot, points: Array) -> float:
+    """Least clearance [m] of a body that was measured at its points (S, 3) [m].
 
-    def sampled(self, spacing: float) -> Self:
-        """The same robot with a body point every `spacing` [m] or less."""
-        ...
-
-
-def least_clearance(zone: SafeZone, points: Array, radii: Array, judged: BoolArray) -> float:
-    """Least clearance [m] of the body surface at the judged points; infinite without a wall.
-
-    Arguments:
-        points: (S, 3) [m]
-        radii: of the body (S,) [m]
-        judged: which points count (S,)
+    The fixed base does not count: no actuator is to blame for where it stands.
     """
-    return float(np.min(zone.clearance(points[judged]) - radii[judged], initial=np.inf))
+    clearance = zone.clearance(points[robot.movable]) - robot.radii[robot.movable]
+    return float(np.min(clearance, initial=np.inf))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,25 +30,15 @@ class SurfaceClearance:
     Arguments:
         robot: sampled finely
         zone: the room it may use
-        judged: points of the fine body (F,) that can move; the base is not the controller's
-        guarded: the same for the points (S,) of the controller's body
     """
 
     robot: Robot
     zone: SafeZone
-    judged: BoolArray
-    guarded: BoolArray
 
     @classmethod
-    def of(cls, robot: Robot, zone: SafeZone, c: Array) -> Self:
-        """Prepare for a robot that starts at configuration c (n,)."""
-        fine = cast(Sampled, robot).sampled(SPACING)
-        return cls(
-            robot=fine,
-            zone=zone,
-            judged=movable(Stage(robot=fine, zone=zone, c=c)),
-            guarded=movable(Stage(robot=robot, zone=zone, c=c)),
-        )
+    def of(cls, robot: Robot, zone: SafeZone) -> Self:
+        """Prepare for a robot."""
+        return cls(robot=robot.sampled(SPACING), zone=zone)
 
     def least(self, before: Array, after: Array) -> float:
         """Least surface clearance [m] on the straight way from one configuration to another.
@@ -69,8 +47,8 @@ class SurfaceClearance:
         next to them tell that they cannot be the closest ones. The result is exact.
         """
         share = np.arange(1, SHAPES + 1)[:, None] / SHAPES
-        points = self.robot.points(before + share * (after - before))[:, self.judged]
-        radii = self.robot.radii[self.judged]
+        points = self.robot.points(before + share * (after - before))[:, self.robot.movable]
+        radii = self.robot.radii[self.robot.movable]
         coarse = np.arange(len(radii)) // COARSE * COARSE
         some = self.zone.clearance(points[:, ::COARSE])
         least = float(np.min(some - radii[::COARSE], initial=np.inf))
