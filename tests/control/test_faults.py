@@ -94,6 +94,24 @@ def test_a_short_way_through_a_thin_wall_is_seen() -> None:
     assert mpc.walls.slack(end).min() >= 0.0
 
 
+def test_a_point_that_goes_out_and_back_is_seen() -> None:
+    # Mirrored S-shapes have the same tip, and it stretches forward between them.
+    robot = robot_at(0.0)
+    c = np.array([0.5, 0.0, 0.065, -1.0, 0.0, 0.065, 0.5, 0.0, 0.065])
+    other = c * np.array([-1.0, 1.0, 1.0] * 3)
+    stretched = robot.tip(0.5 * (c + other))[2]
+    assert np.linalg.norm(robot.tip(c) - robot.tip(other)) < 1e-3
+    height = 0.5 * (robot.tip(c)[2] + stretched) + 0.008 + 0.001
+    assert stretched - robot.tip(c)[2] > 2e-3
+    room = shapes.box([0.3, 0.3, height + 0.1], centre=[0.0, 0.0, (height - 0.1) / 2])
+    mpc = ShapeConstrainedMPC(robot, SafeZone.from_mesh(room), margin=0.001)
+    start, goal = mpc.stage(c), mpc.stage(other)
+    assert min(mpc.walls.slack(start).min(), mpc.walls.slack(goal).min()) > 0.0
+    end, share = SafetyFilter(shape=mpc.terms.shape, limits=(), dt=mpc.dt).accept(start, goal)
+    assert share < 0.5
+    assert mpc.walls.slack(end).min() >= 0.0
+
+
 @pytest.mark.parametrize(
     ("field", "value"),
     [("margin", -1e-3), ("margin", np.nan), ("dt", 0.0), ("dt", np.inf), ("horizon", 0),

@@ -20,6 +20,10 @@ SAME = 1e-6
 # Slack that a recovering body may lose for a moment on its way to a better shape [m].
 WOBBLE = 1e-4
 
+# Share of the bow of a whole way that its halves are allowed: twice the quarter that they
+# have if the way is a parabola.
+BOW = 0.5
+
 CHECKS = 256  # shapes looked at before the filter gives a step up
 ATTEMPTS = 16  # at shortening a step before the robot stands still
 ROUNDING = 1e-9  # share by which a step is shortened further than its limits ask
@@ -64,27 +68,25 @@ class SafetyFilter:
         """Whether every shape on the straight way in c keeps its floors.
 
         Every constraint bounds its slack between two shapes from below; where the bound is
-        not enough the shape in the middle is looked at.
+        not enough the shape in the middle is looked at. A body point's way bows out from its
+        chord; halving a way quarters the bow, and BOW of it is allowed for.
         """
-        recovering = [least < 0.0 for least in floors]
-        allowed = [least - WOBBLE if bad else least
-                   for least, bad in zip(floors, recovering, strict=True)]  # fmt: skip
-        pending, checks = [(start, end)], 0
+        allowed = [least - WOBBLE if least < 0.0 else least for least in floors]
+        pending, checks = [(start, end, np.full(len(start.points), np.inf))], 0
         while pending:
-            a, b = pending.pop()
-            path = float(np.max(np.abs(b.points - a.points)))
-            if path < SAME or all(
-                c.least_between(a, b) >= least for c, least in zip(self.shape, allowed, strict=True)
-            ):
+            a, b, bow = pending.pop()
+            length = np.linalg.norm(b.points - a.points, axis=1) + bow
+            bounds = zip(self.shape, allowed, strict=True)
+            if np.max(length) < SAME or all(c.least_between(a, b, bow) >= x for c, x in bounds):
                 continue
             checks += 1
             middle = at(a, b, 0.5)
             slacks = [np.min(c.slack(middle), initial=np.inf) for c in self.shape]
-            if checks > CHECKS or any(
-                slack < least for slack, least in zip(slacks, allowed, strict=True)
-            ):
+            if checks > CHECKS or any(s < x for s, x in zip(slacks, allowed, strict=True)):
                 return False
-            pending += [(a, middle), (middle, b)]
+            halfway = 0.5 * (a.points + b.points)
+            bow = BOW * np.linalg.norm(middle.points - halfway, axis=1)
+            pending += [(a, middle, bow), (middle, b, bow)]
         return True
 
 

@@ -115,8 +115,12 @@ class ShapeConstraint(Protocol):
         """g (k,) exactly [m]; parts that no motion can change are left out."""
         ...
 
-    def least_between(self, a: Stage, b: Stage) -> float:
-        """A lower bound of the slack on the straight way in c from one stage to another."""
+    def least_between(self, a: Stage, b: Stage, bow: Array) -> float:
+        """A lower bound of the slack on the straight way in c from one stage to another.
+
+        Arguments:
+            bow: how far each body point may stray from its chord (S,) [m]
+        """
         ...
 
     def cuts(self, stage: Stage, contacts: Contacts) -> Cuts:
@@ -149,7 +153,7 @@ class BendLimit:
     def slack(self, stage: Stage) -> Array:
         return stage.bend_slack
 
-    def least_between(self, a: Stage, b: Stage) -> float:
+    def least_between(self, a: Stage, b: Stage, bow: Array) -> float:
         # The slack is concave in c, so it is least at one of the ends.
         return float(min(np.min(a.bend_slack), np.min(b.bend_slack)))
 

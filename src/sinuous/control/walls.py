@@ -21,10 +21,6 @@ from sinuous.geometry.bvh import ZoneArrays
 # one when a solution violates it.
 NEAR = 0.002
 
-# Share by which a body point's path between two checked shapes may exceed its chord; the
-# arc of a turn of 0.5 rad is longer than its chord by 1 %.
-PATH_OVER_CHORD = 1.02
-
 # Walls that yield less than this per unit of every coordinate cannot be steered away from.
 IMMOVABLE = 1e-6
 
@@ -46,12 +42,12 @@ class Walls:
     def slack(self, stage: Stage) -> Array:
         return (stage.walls.clearance - self.required)[self.movable]
 
-    def least_between(self, a: Stage, b: Stage) -> float:
-        # Clearance changes no faster than the point moves, and to be at x on the way from a
-        # to b it moves by |x - a| + |b - x|: half of what both ends have, less half the path.
-        path = PATH_OVER_CHORD * np.linalg.norm(b.points - a.points, axis=1)
+    def least_between(self, a: Stage, b: Stage, bow: Array) -> float:
+        # Clearance changes no faster than the point moves: at x on the chord it is at least
+        # what a has less |x - a| and what b has less |b - x|, so the mean of both.
+        chord = np.linalg.norm(b.points - a.points, axis=1)
         both = a.walls.clearance + b.walls.clearance - 2.0 * self.required
-        return 0.5 * float(np.min((both - path)[self.movable], initial=np.inf))
+        return float(np.min((0.5 * (both - chord) - bow)[self.movable], initial=np.inf))
 
     def cuts(self, stage: Stage, contacts: Contacts) -> Cuts:
         limit = self.required + self.reserve + NEAR
