@@ -59,10 +59,11 @@ class SafetyFilter:
         return start, 0.0
 
     def _safe(self, start: Stage, end: Stage, floors: list[float]) -> bool:
-        ends = [np.min(c.slack(end), initial=np.inf) for c in self.shape]
-        if any(slack < least for slack, least in zip(ends, floors, strict=True)):
-            return False
-        return self._way_is_safe(start, end, floors)
+        return self._keeps(end, floors) and self._way_is_safe(start, end, floors)
+
+    def _keeps(self, stage: Stage, floors: list[float]) -> bool:
+        slacks = (np.min(c.slack(stage), initial=np.inf) for c in self.shape)
+        return all(slack >= least for slack, least in zip(slacks, floors, strict=True))
 
     def _way_is_safe(self, start: Stage, end: Stage, floors: list[float]) -> bool:
         """Whether every shape on the straight way in c keeps its floors.
@@ -72,22 +73,27 @@ class SafetyFilter:
         chord; halving a way quarters the bow, and BOW of it is allowed for.
         """
         allowed = [least - WOBBLE if least < 0.0 else least for least in floors]
-        pending, checks = [(start, end, np.full(len(start.points), np.inf))], 0
+        pending: list[tuple[Stage, Stage, Array | None]] = [(start, end, None)]
+        checks = 0
         while pending:
             a, b, bow = pending.pop()
-            length = np.linalg.norm(b.points - a.points, axis=1) + bow
-            bounds = zip(self.shape, allowed, strict=True)
-            if np.max(length) < SAME or all(c.least_between(a, b, bow) >= x for c, x in bounds):
+            if bow is not None and self._bounded(a, b, bow, allowed):
                 continue
             checks += 1
             middle = at(a, b, 0.5)
-            slacks = [np.min(c.slack(middle), initial=np.inf) for c in self.shape]
-            if checks > CHECKS or any(s < x for s, x in zip(slacks, allowed, strict=True)):
+            if checks > CHECKS or not self._keeps(middle, allowed):
                 return False
             halfway = 0.5 * (a.points + b.points)
             bow = BOW * np.linalg.norm(middle.points - halfway, axis=1)
             pending += [(a, middle, bow), (middle, b, bow)]
         return True
+
+    def _bounded(self, a: Stage, b: Stage, bow: Array, allowed: list[float]) -> bool:
+        """Whether nothing between two shapes can fall below what is allowed."""
+        if np.max(np.linalg.norm(b.points - a.points, axis=1) + bow) < SAME:
+            return True
+        bounds = zip(self.shape, allowed, strict=True)
+        return all(constraint.least_between(a, b, bow) >= least for constraint, least in bounds)
 
 
 def floor(slack: Array) -> float:
