@@ -321,7 +321,7 @@ def simple(**fields: object) -> qp.Problem:
         H=np.eye(2), f=np.ones(2), A=np.eye(2), lower=np.full(2, -3.0), upper=np.full(2, 3.0),
         value=np.ones(2), size=1.0, hard=1, penalty=1e3,
     )  # fmt: skip
-    return replace(problem, **fields)  # type: ignore[arg-type]
+    return replace(problem, **fields)
 
 
 def test_the_simple_problem_itself_can_be_solved() -> None:

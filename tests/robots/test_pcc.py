@@ -47,7 +47,7 @@ def one_segment(*, length: float = 0.06, count: int = 1, **fields: object) -> Pc
                       cable_length=(0.0, 1.0))  # fmt: skip
     speed = SpeedLimits(cable=0.02, backbone=0.01, insertion=0.03)
     robot = PccRobot(name="plain", segments=(segment,) * count, speed=speed)
-    return replace(robot, **fields)  # type: ignore[arg-type]
+    return replace(robot, **fields)
 
 
 @pytest.mark.parametrize("name", PRESETS)

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from sinuous.arrays import Array
 from sinuous.control import qp
 from sinuous.control.merit import descend
@@ -12,8 +14,10 @@ from sinuous.control.report import Active
 from sinuous.control.shape import Contacts
 from sinuous.control.stage import Stage
 
-# Rounds of solving and adding violated planes.
+# Rounds of solving and adding violated planes. A body that is beyond a limit anyway violates
+# planes in every round: the filter judges its step, and more rounds would not change that.
 ROUNDS = 6
+ROUNDS_BEYOND = 2
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,26 +65,28 @@ def make_plan(
         for constraint in terms.shape
     ]
     solution = qp.Solution.nothing()
-    while pending and rounds < ROUNDS:
-        problem = problem.with_cuts(scale, [(one.stage, one.cuts) for one in pending])
-        placed += pending
+    inside = all(np.min(c.slack(start), initial=0.0) >= 0.0 for c in terms.shape)
+    most = ROUNDS if inside else ROUNDS_BEYOND
+    while pending and rounds < most:
+        wider = problem.with_cuts(scale, [(one.stage, one.cuts) for one in pending])
         rounds += 1
-        solution = qp.solve(problem)
-        if solution.failure:
-            break
+        attempt = qp.solve(wider)
+        if attempt.failure and solution.failure:
+            return Plan(contacts=contacts, iterations=rounds, planes=wider.soft_rows,
+                        failure=attempt.failure)  # fmt: skip
+        if attempt.failure:
+            break  # the last solution stands; the filter judges its step
+        problem, solution, placed = wider, attempt, placed + pending
         delta = scale.delta(solution.y)
         found = [start.moved_to(s.c + d) for s, d in zip(predicted, delta, strict=True)]
         pending = _violated(terms, predicted, found)
-    planes = len(problem.lower) - problem.hard
-    if solution.failure:
-        return Plan(contacts=contacts, iterations=rounds, planes=planes, failure=solution.failure)
     multipliers = problem.multipliers(solution)
     leaning = contacts_of(placed, multipliers[problem.hard :], len(predicted))
     return Plan(
         found=descend(terms, start, predicted, found, target, leaning),
         contacts=leaning,
         iterations=rounds,
-        planes=planes,
+        planes=problem.soft_rows,
         active=active_of(start, hard, placed, multipliers),
     )
 

@@ -25,8 +25,8 @@ PENALTY = 100.0
 # makes the penalty exact; this one keeps the factorisations well conditioned.
 SOFTNESS = 1e-2
 
-# Active-set changes before the solver gives up; steps seen need fewer than 1000.
-ITERATIONS = 5000
+# Active-set changes before the solver gives up; steps inside the margin need fewer than 200.
+ITERATIONS = 1000
 
 # Eigenvalues of a stage's scaled Hessian are kept above this share of the largest.
 CONVEX = 1e-9
@@ -64,6 +64,11 @@ class Problem:
             upper=np.concatenate([self.upper, np.full(count, np.inf)]),
             value=np.concatenate([self.value, self.size / (scale.step * norms)]),
         )
+
+    @property
+    def soft_rows(self) -> int:
+        """How many rows may be violated."""
+        return len(self.lower) - self.hard
 
     def multipliers(self, solution: "Solution") -> Array:
         """Multipliers (m,) without sign in [cost / m]."""

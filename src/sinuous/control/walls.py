@@ -21,6 +21,10 @@ from sinuous.geometry.bvh import ZoneArrays
 # one when a solution violates it.
 NEAR = 0.002
 
+# Planes of one stage that join at a time, the tightest first. What is left out joins when a
+# solution violates it; without a bound a body deep in the wall would stall the solver.
+MOST = 24
+
 # Walls that yield less than this per unit of every coordinate cannot be steered away from.
 IMMOVABLE = 1e-6
 
@@ -87,7 +91,8 @@ class Walls:
         slack -= self.required[points] + self.reserve
         rows = Cuts(jacobian=A, slack=slack, source=points, triangle=triangles, normal=normal)
         # From outside, only the nearest wall shows the way back in.
-        return rows.only(np.flatnonzero((inside | own) & np.any(np.abs(A) > IMMOVABLE, axis=1)))
+        useful = np.flatnonzero((inside | own) & np.any(np.abs(A) > IMMOVABLE, axis=1))
+        return rows.only(useful[np.argsort(slack[useful], kind="stable")[:MOST]])
 
 
 @kernel
