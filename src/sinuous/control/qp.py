@@ -25,8 +25,8 @@ PENALTY = 100.0
 # makes the penalty exact; this one keeps the factorisations well conditioned.
 SOFTNESS = 1e-2
 
-# Active-set changes before the solver gives up; steps inside the margin need fewer than 200.
-ITERATIONS = 1000
+# Active-set changes before the solver gives up: at least so many, and so many per variable.
+ITERATIONS, ITERATIONS_PER_VARIABLE = 1000, 30
 
 # Eigenvalues of a stage's scaled Hessian are kept above this share of the largest.
 CONVEX = 1e-9
@@ -207,7 +207,8 @@ def _daqp(problem: Problem) -> tuple[Array, Array, int]:
     flag, _ = model.setup(problem.H, problem.f, problem.A, *bounds, sense)
     if flag < 0:
         return problem.f, problem.lower, int(flag)
-    model.settings = {"iter_limit": ITERATIONS}
+    most = max(ITERATIONS, ITERATIONS_PER_VARIABLE * len(problem.f))
+    model.settings = {"iter_limit": most}
     # Row by row: the settings w_soft and rho_soft would weigh rows that DAQP has normalised.
     linear, softness = np.full(len(sense), problem.penalty), np.full(len(sense), SOFTNESS)
     model.soft_weights(rho_l=softness, rho_u=softness, w_l=linear, w_u=linear)
