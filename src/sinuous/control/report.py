@@ -15,11 +15,6 @@ class Status(Enum):
     RECOVERING = "recovering: part of the body is beyond the margin and is coming back"
     HOLDING = "holding still: no safe command was found; see the reason"
 
-    @property
-    def label(self) -> str:
-        """The first words, for tables and recordings."""
-        return self.value.split(":")[0]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Active:
