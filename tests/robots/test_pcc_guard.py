@@ -1,4 +1,4 @@
-"""Guarding the whole body from some of its points, bend limits, and the curvature term."""
+"""Guarding the whole body from some of its points, and bend limits."""
 
 from dataclasses import replace
 
@@ -187,39 +187,6 @@ def test_bend_slack_jacobian_is_finite_when_straight() -> None:
     J = robot.bend_slack_jacobian(robot.home)
     assert np.all(np.isfinite(J))
     assert np.count_nonzero(J) == len(J)  # only the length matters there
-
-
-# --- curvature ------------------------------------------------------------------------------
-
-
-@given(robot=robots, seed=seeds)
-@settings(max_examples=30)
-def test_points_curvature_is_the_derivative_of_the_force(robot: PccRobot, seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    c = configurations(robot, rng, 4)[rng.integers(4)]
-    forces = rng.normal(size=(len(robot.radii), 3)) * rng.integers(0, 2, (len(robot.radii), 1))
-    forces[-1] = rng.normal(size=3)
-    value = robot.points_curvature(c, forces)
-    np.testing.assert_array_equal(value, value.T)
-
-    def force(c: Array) -> Array:
-        return np.einsum("...sin,si->...n", robot.points_jacobian(c), forces)
-
-    steps = STEP * np.eye(len(c))
-    wide = (force(c + steps) - force(c - steps)) / (2 * STEP)
-    half = (force(c + steps / 2) - force(c - steps / 2)) / STEP
-    expected = ((4 * half - wide) / 3).T
-    assert np.max(np.abs(value - expected)) < JACOBIAN * np.max(np.abs(expected))
-
-
-def test_points_curvature_is_linear_in_the_forces() -> None:
-    robot, rng = load_robot("hachen2025"), np.random.default_rng(3)
-    c = configurations(robot, rng, 2)[-1]
-    f, g = rng.normal(size=(2, len(robot.radii), 3))
-    together = robot.points_curvature(c, f + 2.0 * g)
-    apart = robot.points_curvature(c, f) + 2.0 * robot.points_curvature(c, g)
-    assert np.max(np.abs(together - apart)) < JACOBIAN * np.max(np.abs(together))
-    assert np.all(robot.points_curvature(c, 0.0 * f) == 0.0)
 
 
 def test_both_conventions_have_the_same_body() -> None:

@@ -29,7 +29,7 @@ class Section:
         curvature: largest [1/m]
         theta: column of theta_x in the configuration, -1 if it is straight
         gamma: column of its length, -1 if that is fixed
-        direction: unit vector along a straight section, in its own frame
+        direction: unit vector in which it starts, in its own frame; z if it bends
     """
 
     name: str

@@ -15,10 +15,11 @@ from typing import Self
 import numpy as np
 
 from sinuous.arrays import Array, ArrayLike, BoolArray, IntArray
-from sinuous.robots import pcc_kernels
+from sinuous.robots import pcc_kernels, pcc_second
 from sinuous.robots.body import Body, Section
 from sinuous.robots.layout import Layout
 from sinuous.robots.parts import CableConvention, Insertion, Segment, SpeedLimits, Tool
+from sinuous.robots.pcc_kernels import Chain
 
 # Bends smaller than this have no direction worth naming: the slack's gradient ignores them.
 STRAIGHT = 1e-9
@@ -157,6 +158,11 @@ class PccRobot:
             )
 
     @property
+    def chain(self) -> Chain:
+        """The body as plain arrays, what compiled controllers read; see `pcc_kernels`."""
+        return self._body.chain
+
+    @property
     def movable(self) -> BoolArray:
         """Which guarded points any actuator can move (S,): all but the fixed base."""
         return self._body.movable
@@ -183,14 +189,14 @@ class PccRobot:
         """Guarded points (..., S, 3) in the world frame [m], the base first, the tip last."""
         flat, shape = self._flat(c)
         out = np.empty((len(flat), len(self.radii), 3))
-        pcc_kernels.points_batch(self._body.chain, self.T_w_b, flat, out)
+        pcc_kernels.points_batch(self.chain, self.T_w_b, flat, out)
         return out.reshape(*shape, *out.shape[1:])
 
     def points_jacobian(self, c: ArrayLike) -> Array:
         """Derivative (..., S, 3, n) of the points by the configuration, analytic."""
         flat, shape = self._flat(c)
         out = np.empty((len(flat), len(self.radii), 3, flat.shape[1]))
-        pcc_kernels.points_jacobian_batch(self._body.chain, self.T_w_b, flat, out)
+        pcc_kernels.points_jacobian_batch(self.chain, self.T_w_b, flat, out)
         return out.reshape(*shape, *out.shape[1:])
 
     def tip(self, c: ArrayLike) -> Array:
@@ -204,19 +210,22 @@ class PccRobot:
         T = np.tile(np.eye(4), (len(flat), 1, 1))
         R, p = np.empty((sections + 1, 3, 3)), np.empty((sections + 1, 3))
         for pose, one in zip(T, flat, strict=True):
-            pcc_kernels.frames(self._body.chain, self.T_w_b, one, R, p)
+            pcc_kernels.frames(self.chain, self.T_w_b, one, R, p)
             pose[:3, :3], pose[:3, 3] = R[-1], p[-1]
         return T.reshape(*shape, 4, 4)
 
     def points_curvature(self, c: ArrayLike, forces: Array) -> Array:
-        """Derivative (n, n) of the generalised force sum_s J_s' f_s, with f (S, 3) held.
-
-        By central differences of the analytic Jacobian: it shapes the step of an optimiser
-        and needs no more than a few digits.
-        """
-        value = np.asarray(c, dtype=float)
-        out = np.empty((len(value), len(value)))
-        pcc_kernels.curvature(self._body.chain, self.T_w_b, value, forces, out)
+        """Derivative (n, n) of the generalised force sum_s J_s' f_s, with f (S, 3) held."""
+        value = np.ascontiguousarray(c, dtype=float)
+        sections, n = len(self._body.sections), len(value)
+        R, p = np.empty((sections + 1, 3, 3)), np.empty((sections + 1, 3))
+        ends, spins = np.empty((sections, 3, 3)), np.empty((sections, 3, 2))
+        pcc_kernels.chain_derivative(self.chain, self.T_w_b, value, R, p, ends, spins)
+        acting = np.flatnonzero(np.any(forces, axis=1))
+        out, scratch = np.empty((n, n)), np.empty(pcc_second.scratch_size(sections, n))
+        pcc_second.curvature(
+            self.chain, value, R, p, ends, spins, acting, forces[acting], len(acting), scratch, out
+        )
         return out
 
     def _flat(self, c: ArrayLike) -> tuple[Array, tuple[int, ...]]:
@@ -225,9 +234,13 @@ class PccRobot:
 
     # --- bend limits ---------------------------------------------------------------------
 
+    @property
+    def bend_limits(self) -> tuple[IntArray, Array, Array, Array]:
+        """Column of theta_x, map (J, n) and offset (J,) of the largest bend, pitch radius."""
+        return self._bend_limits
+
     @cached_property
     def _bend_limits(self) -> tuple[IntArray, Array, Array, Array]:
-        """Column of theta_x, map (J, n) and offset (J,) of the largest bend, pitch radius."""
         thetas, slopes, offsets, pitches = list[int](), list[Array](), list[float](), list[float]()
         for segment, (theta, gamma) in zip(self.segments, self._layout.columns, strict=True):
             for slope, offset in segment.bend_planes:

@@ -3,6 +3,7 @@
 from typing import Protocol, Self
 
 from sinuous.arrays import Array, ArrayLike, BoolArray, IntArray
+from sinuous.robots.pcc_kernels import Chain
 
 
 class Robot(Protocol):
@@ -16,6 +17,11 @@ class Robot(Protocol):
     @property
     def name(self) -> str: ...
     @property
+    def T_w_b(self) -> Array:
+        """Pose of the base in the world (4, 4)."""
+        ...
+
+    @property
     def home(self) -> Array:
         """Configuration (n,) to start from."""
         ...
@@ -24,6 +30,11 @@ class Robot(Protocol):
     def coordinate_names(self) -> tuple[str, ...]: ...
     @property
     def actuator_names(self) -> tuple[str, ...]: ...
+    @property
+    def chain(self) -> Chain:
+        """The body as plain arrays: what compiled controllers read."""
+        ...
+
     @property
     def radii(self) -> Array:
         """Body radius [m] at every guarded point (S,)."""
@@ -52,6 +63,12 @@ class Robot(Protocol):
     @property
     def coordinate_limits(self) -> Array:
         """Limits of the coordinates (n, 2) that no actuator's limits imply, else infinite."""
+        ...
+
+    @property
+    def bend_limits(self) -> tuple[IntArray, Array, Array, Array]:
+        """Limits |theta| <= slope c + offset: column of theta_x (J,), slope (J, n) and offset
+        (J,) of the largest bend [rad], and the pitch radius (J,) [m] that makes it cable travel."""
         ...
 
     @property
