@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sinuous.arrays import Array, IntArray
-from sinuous.compiled import kernel
+from sinuous.compiled import inner, kernel
 from sinuous.geometry.triangle import EDGE, FACE, VERTEX, closest
 
 STACK = 64  # median splits: depth is log2(triangles), so 64 is never reached
@@ -54,7 +54,7 @@ class ZoneArrays(NamedTuple):
     scale: float
 
 
-@kernel
+@inner
 def _box(lower: Array, upper: Array, node: int, x: float, y: float, z: float) -> float:
     """Squared distance from a point to a box, zero inside."""
     dx = max(lower[node, 0] - x, x - upper[node, 0], 0.0)
@@ -63,8 +63,8 @@ def _box(lower: Array, upper: Array, node: int, x: float, y: float, z: float) ->
     return dx * dx + dy * dy + dz * dz
 
 
-@kernel
-def _search(
+@inner
+def search(
     zone: ZoneArrays,
     root: int,
     x: float,
@@ -114,8 +114,8 @@ def _search(
     return found
 
 
-@kernel
-def _signed(
+@inner
+def signed(
     zone: ZoneArrays, slot: int, x: float, y: float, z: float
 ) -> tuple[float, float, float, float]:
     """Signed distance to the surface whose nearest triangle is `slot`, and its gradient."""
@@ -169,9 +169,9 @@ def nearest(
             bound = np.inf
             if last >= 0:
                 bound = closest(zone.corners, zone.winding_normal, last, x, y, z)[0]
-            slot = _search(zone, zone.roots[k], x, y, z, bound, stack, keys)
+            slot = search(zone, zone.roots[k], x, y, z, bound, stack, keys)
             last = slot
-            d, gx, gy, gz = _signed(zone, slot, x, y, z)
+            d, gx, gy, gz = signed(zone, slot, x, y, z)
             if d < clearance[i]:
                 clearance[i] = d
                 gradient[i, 0], gradient[i, 1], gradient[i, 2] = gx, gy, gz
@@ -180,35 +180,30 @@ def nearest(
 
 @kernel
 def plane(
-    zone: ZoneArrays, triangle: int, p: Array, inside: bool
+    zone: ZoneArrays, slot: int, x: float, y: float, z: float
 ) -> tuple[float, float, float, float]:
-    """Signed distance from p to one triangle and its unit gradient.
+    """Distance from a point on the free side to one triangle, and its unit gradient.
 
-    The distance to a triangle is convex, so for `inside` the plane d + n . (x - p) bounds the
-    distance of every x from below: keeping it positive is safe, however far x is from p.
+    The distance to a triangle is convex, so the plane d + n . (x - p) bounds the distance of
+    every x from below: keeping it positive is safe, however far x is from p.
 
     Arguments:
         zone: the surfaces
-        triangle: its number in the zone; an open triangle, or -1, is infinitely far
-        p: [m] (3,)
-        inside: whether p is on the free side; otherwise the distance counts as negative and the
-            gradient points to the triangle
+        slot: where the triangle is stored
+        x, y, z: the point p [m]
 
     Returns:
-        d [m] and n; where p is almost on the triangle, n is the normal of its free side
+        d [m] and n; where p is almost on the triangle, n is the normal of its free side and d
+        the height above it
     """
-    slot = zone.slot[triangle] if triangle >= 0 else -1
-    if slot < 0:
-        return np.inf, 0.0, 0.0, 0.0
-    d2, dx, dy, dz, feature = closest(zone.corners, zone.winding_normal, slot, p[0], p[1], p[2])
+    d2, dx, dy, dz, feature = closest(zone.corners, zone.winding_normal, slot, x, y, z)
     distance = np.sqrt(d2)
     n = zone.face_normal[slot]
     height = dx * n[0] + dy * n[1] + dz * n[2]
     if distance <= NEAR * zone.scale:
         return height, n[0], n[1], n[2]
-    sign = 1.0 if inside else -1.0
     if feature == FACE:
-        s = sign if height >= 0.0 else -sign
-        return sign * distance, s * n[0], s * n[1], s * n[2]
-    f = sign / distance
-    return sign * distance, f * dx, f * dy, f * dz
+        s = 1.0 if height >= 0.0 else -1.0
+        return distance, s * n[0], s * n[1], s * n[2]
+    f = 1.0 / distance
+    return distance, f * dx, f * dy, f * dz

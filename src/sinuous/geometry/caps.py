@@ -8,11 +8,10 @@ import numpy as np
 from sinuous.arrays import Array, IntArray
 from sinuous.geometry.draft import Draft, Step, fatal, repaired
 from sinuous.geometry.normals import unit
+from sinuous.geometry.outline import PLANAR, nested, outlines_of
 from sinuous.geometry.report import Finding, places
 from sinuous.geometry.surface import Part
 from sinuous.geometry.topology import edges_of, half_edges, loops
-
-PLANAR = 1e-4  # deviation from a plane, as a share of the loop's size, that is measuring noise
 
 
 def boundary_loops(draft: Draft) -> list[IntArray]:
@@ -21,41 +20,22 @@ def boundary_loops(draft: Draft) -> list[IntArray]:
     return loops(half_edges(draft.faces)[count[edges] == 1][:, ::-1])
 
 
-def size_of(points: Array) -> float:
-    """Diameter of the ball around the mean of points [m] (N, 3) that holds them all."""
-    return 2.0 * float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
-
-
-def plane_of(outline: Array) -> tuple[Array, Array, float]:
-    """Mean plane of a closed outline (N, 3).
-
-    Returns:
-        centre (3,), unit normal (3,) for which the outline runs anticlockwise, and the largest
-        distance from the plane [m]
-    """
-    centre = outline.mean(axis=0)
-    arm = outline - centre
-    normal = np.cross(arm, np.roll(arm, -1, axis=0)).sum(axis=0)
-    normal = normal / max(float(np.linalg.norm(normal)), np.finfo(float).tiny)
-    return centre, normal, float(np.abs(arm @ normal).max())
-
-
 def open_findings(draft: Draft, keep_out: bool = False) -> list[Finding]:
     """Say how many open ends a mesh has and where; those of a keep-out are never capped."""
     ends = boundary_loops(draft)
     if not ends:
         return []
-    outlines = [draft.vertices[e] for e in ends]
-    sizes = ", ".join(f"{1e3 * size_of(o):.3g}" for o in outlines[:3])
+    outlines = outlines_of(draft.vertices, ends)
+    sizes = ", ".join(f"{1e3 * size:.3g}" for size in outlines.size[:3])
     if keep_out:
         remedy = "Close it in a mesh editor: a keep-out has to enclose what it blocks."
-    elif all(plane_of(o)[2] <= PLANAR * size_of(o) for o in outlines):
+    elif np.all(outlines.off <= PLANAR * outlines.size):
         remedy = "Set cap = true to close the open ends by planar caps."
     else:
         remedy = "Close it in a mesh editor; caps are only made for planar ends."
     count = "one open end" if len(ends) == 1 else f"{len(ends)} open ends"
     what = f"an open mesh: {count}, {sizes} mm across"
-    return [fatal(what, "a closed mesh", remedy, places([o.mean(axis=0) for o in outlines]))]
+    return [fatal(what, "a closed mesh", remedy, places(outlines.centre))]
 
 
 def _fill(flat: Array) -> list[tuple[int, int, int]]:
@@ -84,31 +64,20 @@ def _fill(flat: Array) -> list[tuple[int, int, int]]:
     return done
 
 
-def _nested(outlines: list[Array]) -> list[Finding]:
-    """Find ends inside one another in one plane: a cap on each would overlap."""
-    planes = [(*plane_of(o), size_of(o)) for o in outlines]
-    for i, (centre, normal, _, size) in enumerate(planes):
-        for other, facing, _, width in planes[:i]:
-            apart = other - centre
-            near = np.linalg.norm(apart) < max(size, width) / 2.0
-            flat = abs(float(apart @ normal)) <= PLANAR * max(size, width)
-            if near and flat and float(normal @ facing) < 0.0:
-                what, remedy = "a ring-shaped open end", "Close it in a mesh editor."
-                return [fatal(what, "open ends with one outline each", remedy, places([centre]))]
-    return []
-
-
 def add_caps(draft: Draft) -> Step:
     """Close every planar open end; the mesh must be wound consistently."""
     faces: list[IntArray] = []
     ends = boundary_loops(draft)
-    findings = _nested([draft.vertices[loop] for loop in ends])
-    if findings:
-        return draft, findings
-    for loop in ends:
+    findings: list[Finding] = []
+    outlines = outlines_of(draft.vertices, ends)
+    if (inner := nested(outlines)) >= 0:
+        # One lies in another: a cap on each would overlap.
+        what, remedy = "a ring-shaped open end", "Close it in a mesh editor."
+        where = places([outlines.centre[inner]])
+        return draft, [fatal(what, "open ends with one outline each", remedy, where)]
+    for loop, centre, normal, off, size in zip(ends, *outlines, strict=True):
         outline = draft.vertices[loop]
-        centre, normal, off = plane_of(outline)
-        if off > PLANAR * size_of(outline):
+        if off > PLANAR * size:
             what = f"an open end that is {1e3 * off:.3g} mm from planar"
             remedy = "Cut the end by a plane in a mesh editor, then cap it."
             return draft, [fatal(what, "a planar open end", remedy, places([centre]))]
@@ -116,7 +85,7 @@ def add_caps(draft: Draft) -> Step:
         u = unit(across - (across @ normal) * normal)
         flat = (outline - centre) @ np.stack([u, np.cross(normal, u)], axis=1)
         faces.append(loop[np.array(_fill(flat), dtype=np.int64).reshape(-1, 3)])
-        what = f"an open end {1e3 * size_of(outline):.3g} mm across"
+        what = f"an open end {1e3 * size:.3g} mm across"
         findings.append(repaired(what, "It was closed by a planar cap.", places([centre])))
     count = sum(len(f) for f in faces)
     capped = replace(

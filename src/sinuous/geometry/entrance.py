@@ -7,40 +7,14 @@ import numpy as np
 from sinuous.arrays import Array, ArrayLike, BoolArray, IntArray
 from sinuous.errors import InputError
 from sinuous.geometry.bvh import nearest
-from sinuous.geometry.caps import size_of
+from sinuous.geometry.facet import PLANE, flatness, largest_facet
 from sinuous.geometry.normals import face_normals, unit
 from sinuous.geometry.report import places
 from sinuous.geometry.surface import Part, Surface, zone_arrays
-from sinuous.geometry.topology import components, edges_of, half_edges
+from sinuous.geometry.topology import edges_of, half_edges
 from sinuous.geometry.triangle import distances
 
-PLANE = 1e-6  # share of the mesh's size by which a facet's vertices may leave its plane
-ANGLE = 0.01  # between the normals of a facet's triangles [rad]
 STEPS = 64  # places along a guide where it is checked not to run into the mesh
-
-
-def facet_of(surface: Surface, seed: int) -> BoolArray:
-    """Triangles (F,) of the planar facet that contains the triangle `seed`.
-
-    A cap is one facet; elsewhere it is the connected coplanar triangles.
-    """
-    corners = surface.vertices[surface.faces]
-    if surface.part[seed] == Part.CAP:
-        flat = surface.part == Part.CAP
-    else:
-        normal = face_normals(corners)
-        height = np.abs((corners - corners[seed, 0]) @ normal[seed]).max(axis=1)
-        tolerance = PLANE * float(np.ptp(surface.vertices, axis=0).max())
-        flat = (height <= tolerance) & (normal @ normal[seed] >= np.cos(ANGLE))
-    label = components(surface.faces[flat])
-    facet = np.zeros(len(flat), dtype=np.bool_)
-    facet[np.flatnonzero(flat)[label == label[np.searchsorted(np.flatnonzero(flat), seed)]]] = True
-    return facet
-
-
-def _area(corners: Array) -> float:
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return float(np.linalg.norm(cross, axis=1).sum() / 2.0)
 
 
 def nearest_facet(surface: Surface, point: Array) -> BoolArray:
@@ -53,15 +27,9 @@ def nearest_facet(surface: Surface, point: Array) -> BoolArray:
     corners = np.ascontiguousarray(surface.vertices[surface.faces])
     away = distances(corners, face_normals(corners), point)
     away[surface.is_open | (surface.part == Part.GUIDE)] = np.inf
-    tolerance = PLANE * float(np.ptp(surface.vertices, axis=0).max())
-    left = away <= away.min() + tolerance
-    best, best_area = np.zeros(len(left), dtype=np.bool_), -1.0
-    while left.any():
-        facet = facet_of(surface, int(np.argmax(left)))
-        left &= ~facet
-        if _area(corners[facet]) > best_area:
-            best, best_area = facet, _area(corners[facet])
-    width = size_of(corners[best].reshape(-1, 3))
+    best = largest_facet(surface, away <= away.min() + flatness(surface))
+    points = corners[best].reshape(-1, 3)
+    width = 2.0 * float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
     if away.min() > width:
         centre = places([corners[best].mean(axis=(0, 1))])
         raise InputError(

@@ -10,7 +10,7 @@ from sinuous.geometry import draft as repair
 from sinuous.geometry.caps import add_caps, open_findings
 from sinuous.geometry.draft import Draft, Step, fatal
 from sinuous.geometry.mesh_file import EXPORT_AGAIN, read_mesh
-from sinuous.geometry.pieces import orient
+from sinuous.geometry.pieces import check_count, orient
 from sinuous.geometry.report import Finding, MeshReport, Severity
 from sinuous.geometry.surface import Part, Surface
 
@@ -54,9 +54,11 @@ def _pipeline(cap: bool, keep_out: bool) -> list[Callable[[Draft], Step]]:
     """The checks and repairs in their order; each may rely on the ones before it."""
 
     def close(draft: Draft) -> Step:
-        if cap and not draft.closed:
-            return add_caps(draft)
-        return draft, open_findings(draft, keep_out)
+        if not cap or draft.closed:
+            return draft, open_findings(draft, keep_out)
+        # Caps join no pieces; closing every bit of debris before saying so would take minutes.
+        crumbs = check_count(draft)
+        return (draft, crumbs) if crumbs else add_caps(draft)
 
     return [
         repair.drop_duplicates,

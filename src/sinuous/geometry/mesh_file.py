@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, NoReturn, cast
 
 import numpy as np
-import trimesh
 
 from sinuous.arrays import Array, IntArray
 from sinuous.errors import InputError
@@ -18,12 +17,12 @@ EXPECTED = "a readable STL, OBJ or PLY mesh"
 EXPORT_AGAIN = "Export the mesh again from the program that made it."
 
 STL_HEAD, STL_TRIANGLE = 84, 50  # bytes of a binary STL file
+STL_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 SHOWN = 1000  # bytes from which text is told from binary data
-MARKS = {
-    ".stl": ('"endsolid"', re.compile(rb"endsolid[^\n]*[\0\s]*$", re.IGNORECASE)),
-    ".ply": ('"end_header"', re.compile(rb"\n\s*end_header\s*\n")),
-}
-"""What a whole file holds in any case: an STL text at its end, a PLY file after its header."""
+BLANK = b"\0 \t\n\r\v\f"
+MARKS = {".stl": '"endsolid"', ".ply": '"end_header"'}
+"""What a whole file has: an STL text in its last line, a PLY file after its header."""
+PLY_HEADER_END = re.compile(rb"\n\s*end_header\s*\n")
 PLY_FACES = re.compile(rb"^element face (\d+)", re.MULTILINE)
 
 
@@ -69,16 +68,25 @@ def _refuse(path: Path, found: str, remedy: str = EXPORT_AGAIN) -> NoReturn:
 
 
 def _parse(data: bytes, kind: str) -> tuple[Array, IntArray]:
+    if kind == ".stl" and _fits_binary_stl(data):
+        return _binary_stl(data)
+    import trimesh  # only here: importing it takes longer than everything else about a small mesh
+
     options: dict[str, Any] = {"process": False, "force": "mesh", "file_type": kind[1:]}
     if kind == ".obj":
         options["skip_materials"] = True
-    if kind == ".obj" or (kind == ".stl" and not _fits_binary_stl(data)):
-        data = _utf8(data)
-    elif kind == ".stl":
-        data = data[: STL_HEAD + STL_TRIANGLE * _announced(data)]  # some programs add to the end
-    mesh = cast(Any, trimesh.load(BytesIO(data), **options))
+    text = data if kind == ".ply" else _utf8(data)
+    mesh = cast(Any, trimesh.load(BytesIO(text), **options))
     vertices = np.asarray(mesh.vertices, dtype=np.float64).reshape(-1, 3)
     return vertices, np.asarray(getattr(mesh, "faces", ()), dtype=np.int64).reshape(-1, 3)
+
+
+def _binary_stl(data: bytes) -> tuple[Array, IntArray]:
+    """Three vertices of their own for every triangle; some programs add more behind the last."""
+    count = _announced(data)
+    triangles = np.frombuffer(data, STL_RECORD, count, offset=STL_HEAD)
+    vertices = triangles["corners"].astype(np.float64).reshape(-1, 3)
+    return vertices, np.arange(3 * count).reshape(-1, 3)
 
 
 def _utf8(data: bytes) -> bytes:
@@ -120,8 +128,11 @@ def _wrong_at_once(data: bytes, kind: str) -> str:
         return _alien(data)
     if kind == ".stl" and (not _is_text(data) or b"facet" not in data.lower()):
         return _wrong_stl(data)
-    mark, pattern = MARKS[kind]
-    return "" if pattern.search(data) else f"a truncated file, without its {mark}"
+    if kind == ".ply":
+        whole = PLY_HEADER_END.search(data) is not None
+    else:
+        whole = b"endsolid" in data.rstrip(BLANK).rpartition(b"\n")[2].lower()
+    return "" if whole else f"a truncated file, without its {MARKS[kind]}"
 
 
 def _wrong_stl(data: bytes) -> str:

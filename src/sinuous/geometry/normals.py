@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sinuous.arrays import Array, BoolArray, IntArray
+from sinuous.compiled import kernel
 from sinuous.geometry.topology import edges_of
 
 
@@ -28,24 +29,9 @@ def unit(vectors: Array) -> Array:
     return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0.0)
 
 
-def corner_angles(corners: Array) -> Array:
-    """Interior angles [rad] (F, 3) of triangles (F, 3, 3)."""
-    ahead = unit(np.roll(corners, -1, axis=1) - corners)
-    behind = unit(np.roll(corners, 1, axis=1) - corners)
-    # atan2 of both keeps thin triangles exact where arccos loses half the digits.
-    sine = np.linalg.norm(np.cross(ahead, behind), axis=-1)
-    return np.arctan2(sine, np.sum(ahead * behind, axis=-1))
-
-
 def face_normals(corners: Array) -> Array:
     """Unit normals (F, 3) of triangles (F, 3, 3) by the right-hand rule, zero without area."""
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    return unit(np.cross(unit(b - a), unit(c - a)))
-
-
-def _sum_at(index: IntArray, vectors: Array, size: int) -> Array:
-    sums = [np.bincount(index, vectors[:, d], size) for d in range(3)]
-    return np.stack(sums, axis=1).astype(np.float64)
+    return _face_normals(np.ascontiguousarray(corners))
 
 
 def pseudonormals(vertices: Array, faces: IntArray, is_open: BoolArray) -> Normals:
@@ -60,16 +46,74 @@ def pseudonormals(vertices: Array, faces: IntArray, is_open: BoolArray) -> Norma
         faces: (F, 3)
         is_open: triangles that close the surface but are no walls (F,)
     """
-    corners = vertices[faces]
-    face = face_normals(corners)
-    rim = np.zeros(len(vertices), dtype=np.bool_)
-    rim[faces[is_open]] = True
-    counts = is_open[:, None] | ~rim[faces]
-    weight = corner_angles(corners) * counts
-    weighted = (weight[:, :, None] * face[:, None, :]).reshape(-1, 3)
-    vertex = _sum_at(faces.ravel(), weighted, len(vertices))
-    edges, _ = edges_of(faces)
-    touches_open = np.bincount(edges.ravel(), np.repeat(is_open, 3), edges.max() + 1) > 0
-    use = (is_open[:, None] | ~touches_open[edges]).ravel()
-    per_edge = _sum_at(edges.ravel(), np.repeat(face, 3, axis=0) * use[:, None], edges.max() + 1)
-    return Normals(face, per_edge[edges], vertex[faces])
+    corners = np.ascontiguousarray(vertices[faces])
+    face = _face_normals(corners)
+    edges, count = edges_of(faces)
+    per_edge = _edge_normals(face, edges, is_open, len(count))
+    per_vertex = _vertex_normals(corners, face, faces, is_open, len(vertices))
+    return Normals(face, per_edge[edges], per_vertex[faces])
+
+
+@kernel
+def _between(a: Array, b: Array) -> tuple[float, float, float]:
+    """Unit vector from a to b (3,), zero if they are the same."""
+    x, y, z = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    length = np.sqrt(x * x + y * y + z * z)
+    return (x / length, y / length, z / length) if length > 0.0 else (0.0, 0.0, 0.0)
+
+
+@kernel
+def _across(
+    u: tuple[float, float, float], v: tuple[float, float, float]
+) -> tuple[float, float, float]:
+    """Cross product."""
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+
+
+@kernel
+def _face_normals(corners: Array) -> Array:
+    normal = np.zeros((corners.shape[0], 3))
+    for s in range(corners.shape[0]):
+        a, b, c = corners[s, 0], corners[s, 1], corners[s, 2]
+        x, y, z = _across(_between(a, b), _between(a, c))
+        length = np.sqrt(x * x + y * y + z * z)
+        if length > 0.0:
+            normal[s, 0], normal[s, 1], normal[s, 2] = x / length, y / length, z / length
+    return normal
+
+
+@kernel
+def _edge_normals(face: Array, edges: IntArray, is_open: BoolArray, count: int) -> Array:
+    """Sum (count, 3) of the normals at every edge, of open triangles only where there is one."""
+    touches_open = np.zeros(count, np.bool_)
+    for s in np.flatnonzero(is_open):
+        touches_open[edges[s]] = True
+    total = np.zeros((count, 3))
+    for s in range(face.shape[0]):
+        for k in range(3):
+            if is_open[s] or not touches_open[edges[s, k]]:
+                total[edges[s, k]] += face[s]
+    return total
+
+
+@kernel
+def _vertex_normals(
+    corners: Array, face: Array, faces: IntArray, is_open: BoolArray, count: int
+) -> Array:
+    """Sum (count, 3) of the normals at every vertex, weighted by the angles there."""
+    rim = np.zeros(count, np.bool_)
+    for s in np.flatnonzero(is_open):
+        rim[faces[s]] = True
+    total = np.zeros((count, 3))
+    for s in range(face.shape[0]):
+        for k in range(3):
+            if is_open[s] or not rim[faces[s, k]]:
+                here = corners[s, k]
+                u = _between(here, corners[s, (k + 1) % 3])
+                v = _between(here, corners[s, (k + 2) % 3])
+                x, y, z = _across(u, v)
+                # atan2 of both keeps thin triangles exact where arccos loses half the digits.
+                cosine = u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+                angle = np.arctan2(np.sqrt(x * x + y * y + z * z), cosine)
+                total[faces[s, k]] += angle * face[s]
+    return total

@@ -1,18 +1,22 @@
 """The room a robot may use: clearance, gradient and nearest triangle in metres."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from os import PathLike
-from typing import NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
-import trimesh
 
 from sinuous.arrays import Array, ArrayLike, BoolArray, IntArray
 from sinuous.geometry import bvh
 from sinuous.geometry.bvh import ZoneArrays
 from sinuous.geometry.entrance import open_entrance
+from sinuous.geometry.grid import Grid, make_grid
 from sinuous.geometry.mesh import load_surface, prepare
 from sinuous.geometry.surface import Part, Surface, zone_arrays
+
+if TYPE_CHECKING:
+    import trimesh
 
 
 class Nearest(NamedTuple):
@@ -85,7 +89,7 @@ class SafeZone:
     @classmethod
     def from_mesh(
         cls,
-        mesh: trimesh.Trimesh,
+        mesh: "trimesh.Trimesh",
         *,
         name: str = "mesh",
         cap: bool = False,
@@ -101,7 +105,7 @@ class SafeZone:
         """Space without any wall: the clearance is infinite everywhere."""
         return cls(surfaces=())
 
-    def minus(self, mesh: trimesh.Trimesh, *, name: str) -> Self:
+    def minus(self, mesh: "trimesh.Trimesh", *, name: str) -> Self:
         """Take the inside of a closed mesh in metres out of the zone.
 
         Raises:
@@ -136,6 +140,11 @@ class SafeZone:
     def gradient(self, p: ArrayLike) -> Array:
         """Gradient of the clearance (..., 3) at points p [m] (..., 3)."""
         return self.nearest(p).gradient
+
+    @cached_property
+    def grid(self) -> Grid:
+        """Lower bounds of the clearance, for compiled code; built when first asked for."""
+        return make_grid(self.arrays, self.triangles[self.is_open])
 
     @property
     def triangles(self) -> Array:

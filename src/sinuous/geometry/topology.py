@@ -1,10 +1,6 @@
 """Which triangles share which edges."""
 
-from typing import cast
-
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from sinuous.arrays import Array, BoolArray, IntArray
 from sinuous.compiled import kernel
@@ -86,17 +82,37 @@ def neighbours(faces: IntArray) -> tuple[IntArray, BoolArray]:
     return half // 3, start[:, 0] != start[:, 1]
 
 
+@kernel
 def linked(a: IntArray, b: IntArray, count: int) -> IntArray:
-    """Number (count,) of the connected piece of every node of a graph with edges a[i], b[i]."""
-    graph = coo_array((np.ones(len(a)), (a, b)), shape=(count, count))
-    _, label = cast(tuple[int, IntArray], connected_components(graph, directed=False))
-    return label.astype(np.int64)
+    """Number (count,) of the connected piece of every node of a graph with edges a[i], b[i].
+
+    Pieces are numbered in the order of their first nodes.
+    """
+    above = np.arange(count)  # every piece is a tree whose root is its first node
+    for i in range(a.shape[0]):
+        x, y = a[i], b[i]
+        while above[x] != x:
+            above[x] = above[above[x]]
+            x = above[x]
+        while above[y] != y:
+            above[y] = above[above[y]]
+            y = above[y]
+        above[max(x, y)] = min(x, y)
+    label = np.empty(count, np.int64)
+    found = 0
+    for x in range(count):
+        if above[x] == x:
+            label[x] = found
+            found += 1
+        else:
+            label[x] = label[above[x]]
+    return label
 
 
 def components(faces: IntArray) -> IntArray:
     """Number (F,) of the piece, connected through edges of two triangles, of every triangle."""
-    pairs, _ = neighbours(faces)
-    return linked(pairs[:, 0], pairs[:, 1], len(faces))
+    a, b = np.ascontiguousarray(neighbours(faces)[0].T)
+    return linked(a, b, len(faces))
 
 
 @kernel
@@ -146,23 +162,28 @@ def loops(directed: IntArray) -> list[IntArray]:
     for a, b in directed.tolist():
         ahead.setdefault(a, []).append(b)
     found: list[IntArray] = []
-    while ahead:
-        path = [next(iter(ahead))]
-        position = {path[0]: 0}
-        while path[-1] in ahead:
-            here = path[-1]
-            step = ahead[here].pop()
-            if not ahead[here]:
-                del ahead[here]
-            if step in position:
-                cut = position[step]
-                found.append(np.array(path[cut:], dtype=np.int64))
-                for v in path[cut + 1 :]:
-                    del position[v]
-                path = path[: cut + 1]
-            else:
-                position[step] = len(path)
-                path.append(step)
-        if len(path) > 1:
-            found.append(np.array(path, dtype=np.int64))
+    for first in list(ahead):
+        while first in ahead:
+            _walk(ahead, first, found)
     return found
+
+
+def _walk(ahead: dict[int, list[int]], first: int, found: list[IntArray]) -> None:
+    """Follow edges from a vertex until there are none, and take what was walked out of `ahead`."""
+    path, position = [first], {first: 0}
+    while path[-1] in ahead:
+        here = path[-1]
+        step = ahead[here].pop()
+        if not ahead[here]:
+            del ahead[here]
+        if step in position:
+            cut = position[step]
+            found.append(np.array(path[cut:], dtype=np.int64))
+            for v in path[cut + 1 :]:
+                del position[v]
+            path = path[: cut + 1]
+        else:
+            position[step] = len(path)
+            path.append(step)
+    if len(path) > 1:
+        found.append(np.array(path, dtype=np.int64))

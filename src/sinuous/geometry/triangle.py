@@ -7,14 +7,14 @@ arithmetic.
 import numpy as np
 
 from sinuous.arrays import Array
-from sinuous.compiled import kernel
+from sinuous.compiled import inner, kernel
 
 FACE = 0
 EDGE = 1  # EDGE + k: the edge from corner k to corner k + 1
 VERTEX = 4  # VERTEX + k: corner k
 
 
-@kernel
+@inner
 def _on_edge(
     px: float, py: float, pz: float, rx: float, ry: float, rz: float, k: int, j: int
 ) -> tuple[float, float, float, float, int]:
@@ -42,7 +42,7 @@ def _on_edge(
     return dx * dx + dy * dy + dz * dz, dx, dy, dz, feature
 
 
-@kernel
+@inner
 def closest(
     corners: Array, normals: Array, s: int, x: float, y: float, z: float
 ) -> tuple[float, float, float, float, int]:
