@@ -73,7 +73,7 @@ def test_random_robots_keep_margins_and_limits_in_random_tubes(seed: int) -> Non
         dt=float(rng.choice([1 / 30, 1 / 100])),
         tip_speed=float(rng.choice([0.05, 0.2])),
     )
-    assert mpc.walls.slack(mpc.stage(robot.home)).min() > 0.0
+    assert mpc.slack(robot.home).min() > 0.0
     targets = axis[[14, 26, 36]] + rng.normal(0.0, 0.003, (3, 3))
     _, judged = drive(mpc, mpc.init(robot.home), list(targets), steps=70)
     assert judged.worst_margin >= 0.0
@@ -90,14 +90,13 @@ def test_segments_keep_their_own_length_where_actuators_count_from_the_motor() -
     almost, beyond = robot.home.copy(), robot.home.copy()
     almost[5], beyond[5] = 0.0899, 0.0901  # segment 2, its actuators far from their limits
     assert np.all(robot.lengths(beyond) <= robot.length_limits[:, 1] - 0.01)
-    rows = mpc.terms.state_limit.rows(mpc.stage(almost))
-    excess = rows.jacobian @ (beyond - almost) - rows.upper
-    assert [name for name, e in zip(rows.names, excess, strict=True) if e > 0.0] == [
-        "segment 2 length at its limit"
-    ]
+    assert not np.any(robot.coordinate_limits[:, 1] < almost)
+    assert np.flatnonzero(robot.coordinate_limits[:, 1] < beyond).tolist() == [5]
 
     state, longest = mpc.init(robot.home), 0.0
     for _ in range(300):
-        state, _ = mpc.step(state, [0.03, 0.0, 0.5])
+        state, command = mpc.step(state, [0.03, 0.0, 0.5])
         longest = max(longest, float(state.c[2::3].max()))
+    names = [active.name for active in command.report.active]
+    assert "segment 2 length at its limit" in names
     assert 0.0899 < longest <= 0.09 + 1e-12

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from sinuous.arrays import Array
+from sinuous.control.metric import actuator_metric
 from sinuous.control.mpc import Costs, MPCState, ShapeConstrainedMPC
-from sinuous.control.stage import actuator_metric
 from sinuous.control.terms import PRINTED_RATE, Effort, PrintedLengths, TipError
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.robot_file import load_robot

@@ -98,13 +98,13 @@ def scenario(path: Path, overrides: list[str]) -> Rows:
     found = load_scenario(path, set=overrides)
     check_start(found)
     mpc = found.mpc
-    start = mpc.stage(found.first_configuration)
-    room = (start.walls.clearance - found.robot.radii)[found.robot.movable]
+    start = found.robot.points(found.first_configuration)
+    room = (found.zone.clearance(start) - found.robot.radii)[found.robot.movable]
     targets = np.array([leg.at(leg.moving) for leg in found.path])
     steps = sum(leg.steps(mpc.dt) for leg in found.path)
     return [
         ("name", found.name),
-        ("robot", f"{found.robot.name}, base at {millimetres(start.points[0])}"),
+        ("robot", f"{found.robot.name}, base at {millimetres(start[0])}"),
         ("zone", _zone(len(found.zone.triangles), len(found.zone.surfaces))),
         ("margin", f"{mpc.margin * MM_PER_M:g} mm"),
         ("least clearance at the start", _room(float(np.min(room, initial=np.inf)))),

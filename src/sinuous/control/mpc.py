@@ -4,7 +4,8 @@ Each step linearises the problem around the last prediction, solves a QP, checks
 on the exact mesh, adds the planes it violates and solves again; a safety filter then decides
 how much of the first step is taken.  The nominal state moves to x*[1|k-1]; the printed
 x*[0|k-1] of (17) would never move (notes B4).  Costs and constraints act on x[1..N]: as
-printed, (12) leaves x[N] free of cost (notes B3).
+printed, (12) leaves x[N] free of cost (notes B3).  All of it is one compiled call without the
+GIL, see `sinuous.control.step`.
 """
 
 from dataclasses import KW_ONLY, dataclass, field
@@ -14,58 +15,46 @@ from time import perf_counter
 import numpy as np
 
 from sinuous.arrays import Array, ArrayLike
-from sinuous.control import qp
-from sinuous.control.plan import Plan, make_plan
-from sinuous.control.problem import Terms
-from sinuous.control.report import Command, Report, Status
-from sinuous.control.safety import SafetyFilter, floor
-from sinuous.control.shape import BendLimit, Contacts
-from sinuous.control.stage import Stage, actuator_metric
-from sinuous.control.terms import (
-    ActuatorLengths,
-    ActuatorRates,
-    Cost,
-    Effort,
-    Posture,
-    PrintedLengths,
-    TipError,
-    TipSpeed,
-)
-from sinuous.control.walls import Walls
+from sinuous.control.model import Settings, make_model
+from sinuous.control.qp import DenseProblem
+from sinuous.control.reading import Leaning
+from sinuous.control.report import Command, Effort, Report, Status
+from sinuous.control.step import interior, plan
+from sinuous.control.step.data import CONTACTS, Contacts, Model
+from sinuous.control.step.memory import Memory
+from sinuous.control.step.plan import Solved
+from sinuous.control.step.step import Outcome, decide, filtered, first_problem
+from sinuous.control.terms import Costs, QuadraticCost, further_costs, total_quadratics
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.robot import Robot
+
+__all__ = ["Costs", "MPCState", "ShapeConstrainedMPC"]
 
 # The plan keeps this much more than the margin, so that the filter need not cut it [m].
 RESERVE = 5e-5
 
+# Points this close to where they must stop get a plane from the start [m]; all others get one
+# when a solution violates it.
+NEAR = 2e-4
+
+# Rounds of solving and adding violated planes.
+ROUNDS = 6
+
+# What later stages may violate before a round is spent on them [m]: they are planned anew.
+LATE = 2e-4
+
 # Largest change of an actuator from its predicted length that the linearisation is trusted
-# with [m] (notes B17), at least one step at full speed.
-TRUST = 5e-4
+# with [m] (notes B17), at least one step at full speed; short plans do better without.
+TRUST, TRUST_FROM = 5e-4, 5
 
 # A tip this close to its target is there [m]; a slower one has nowhere to go [m/s].
 ARRIVED = 1e-5
 STILL = 3e-5
 
-
-@dataclass(frozen=True, kw_only=True)
-class Costs:
-    """What the controller minimises over the horizon.
-
-    Arguments:
-        state: costs of each predicted configuration
-        effort: cost of the increments
-    """
-
-    state: tuple[Cost, ...] = (TipError(weight=1e5), Posture(weight=5.0))
-    effort: Effort = field(default_factory=lambda: Effort(weight=0.1))
-
-    @classmethod
-    def printed(cls) -> "Costs":
-        """The cost (10) with the weights of paper B III-B; it has a steady error (notes B5)."""
-        return cls(
-            state=(TipError(weight=1000.0), PrintedLengths(weight=10.0)),
-            effort=Effort(weight=10.0),
-        )
+FAILURES = {
+    interior.UNFINISHED: "the QP solver reached its iteration limit",
+    interior.NOT_FINITE: "the QP is not finite",
+}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -76,11 +65,15 @@ class MPCState:
         c: nominal configuration (n,)
         plan: predicted configurations (N, n)
         contacts: walls that each stage of the last plan leaned on
+        points, clearance: of the body at c, the latter exact or a lower bound (S, 3), (S,) [m];
+            empty if nothing is known
     """
 
     c: Array
     plan: Array
-    contacts: tuple[Contacts, ...]
+    contacts: Contacts
+    points: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    clearance: Array = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,9 +88,12 @@ class ShapeConstrainedMPC:
         horizon: N, steps looked ahead
         costs: what is minimised
         tip_speed: largest speed of the tip [m/s], None for no limit
+        budget: processor time that a step may take [s], None for no limit. When it is spent the
+            step goes as far as what is there is safe, or holds still; such steps depend on the
+            machine and do not repeat bit for bit
 
     Raises:
-        ValueError: if margin, dt, horizon or tip_speed make no sense
+        ValueError: if margin, dt, horizon, tip_speed or budget make no sense
     """
 
     robot: Robot
@@ -108,6 +104,7 @@ class ShapeConstrainedMPC:
     horizon: int = 5
     costs: Costs = field(default_factory=Costs)
     tip_speed: float | None = None
+    budget: float | None = None
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.margin) and self.margin >= 0.0):
@@ -118,44 +115,54 @@ class ShapeConstrainedMPC:
             raise ValueError(f"horizon must be at least 1, not {self.horizon}")
         if self.tip_speed is not None and not self.tip_speed > 0.0:
             raise ValueError(f"tip_speed must be positive, not {self.tip_speed}")
+        if self.budget is not None and not self.budget > 0.0:
+            raise ValueError(f"budget must be a positive time, not {self.budget}")
 
     @cached_property
-    def walls(self) -> Walls:
-        """The constraint that keeps the body off the walls."""
-        required = self.robot.required_distance(self.margin)
-        return Walls(required=required, movable=self.robot.movable, reserve=RESERVE)
-
-    @cached_property
-    def terms(self) -> Terms:
-        """All costs and constraints."""
-        tip = () if self.tip_speed is None else (TipSpeed(limit=self.tip_speed),)
+    def model(self) -> Model:
+        """All that stays the same from step to step, as arrays."""
         fastest = float(np.max(self.robot.rate_limits)) * self.dt
-        return Terms(
-            costs=self.costs.state,
-            effort=self.costs.effort,
-            state_limit=ActuatorLengths(trust=max(TRUST, fastest)),
-            increment_limits=(ActuatorRates(), *tip),
-            shape=(self.walls, BendLimit()),
+        settings = Settings(
+            margin=self.margin,
+            dt=self.dt,
+            tip_speed=np.inf if self.tip_speed is None else self.tip_speed,
+            trust=max(TRUST, fastest) if self.horizon >= TRUST_FROM else np.inf,
+            reserve=RESERVE,
+            near=NEAR,
+            rounds=ROUNDS,
+            late=LATE,
         )
+        return make_model(robot=self.robot, zone=self.zone, costs=self.costs, settings=settings)
 
     @cached_property
-    def _scale(self) -> qp.Scale:
-        return qp.Scale(
-            step=float(np.max(self.robot.rate_limits)) * self.dt,
-            inverse=np.asarray(np.linalg.inv(actuator_metric(self.robot)), dtype=np.float64),
-        )
+    def _further_costs(self) -> tuple[QuadraticCost, ...]:
+        return further_costs(self.costs.state)
 
-    def stage(self, c: Array) -> Stage:
-        """Kinematics and clearance at a configuration (n,)."""
-        return Stage(robot=self.robot, zone=self.zone, c=c)
+    @cached_property
+    def _memory(self) -> Memory:
+        return Memory(self.model, self.horizon)
+
+    def slack(self, c: ArrayLike) -> Array:
+        """Clearance of the guarded points beyond what the margin requires (S,) [m].
+
+        Infinite for points that no motion can change, such as a fixed base.
+        """
+        room = self.zone.clearance(self.robot.points(c)) - self.robot.required_distance(self.margin)
+        return np.where(self.robot.movable, room, np.inf)
 
     def init(self, c: ArrayLike) -> MPCState:
         """The state to start from, at rest at configuration c (n,)."""
         start = np.array(c, dtype=float)
+        N = self.horizon
         return MPCState(
             c=start,
-            plan=np.tile(start, (self.horizon, 1)),
-            contacts=(Contacts.none(),) * self.horizon,
+            plan=np.tile(start, (N, 1)),
+            contacts=Contacts(
+                number=np.zeros(N, dtype=np.int64),
+                point=np.zeros((N, CONTACTS), dtype=np.int64),
+                slot=np.zeros((N, CONTACTS), dtype=np.int64),
+                push=np.zeros((N, CONTACTS, 3)),
+            ),
         )
 
     def step(self, state: MPCState, target: ArrayLike) -> tuple[MPCState, Command]:
@@ -164,68 +171,96 @@ class ShapeConstrainedMPC:
         Where no safe command is found the robot holds still and the report says why.
         """
         began = perf_counter()
-        goal, start = np.array(target, dtype=float), self.stage(state.c)
+        goal = np.array(target, dtype=float)
         if goal.shape != (3,) or not np.all(np.isfinite(goal)):
-            return self._hold(state, start, "the target is not three finite numbers", began)
-        try:
-            predicted = [self.stage(c) for c in state.plan]
-            plan = make_plan(
-                self.terms, self._scale, start, predicted, state.contacts, goal, self.dt
-            )
-        except np.linalg.LinAlgError as error:
-            return self._hold(state, start, f"linear algebra failed: {error}", began)
-        if plan.failure:
-            return self._hold(state, start, plan.failure, began)
-        return self._take(state, start, plan, goal, began)
+            return self._hold(state, "the target is not three finite numbers", began)
+        H, f = total_quadratics(self._further_costs, self.robot, state.plan, goal)
+        budget = np.inf if self.budget is None else self.budget
+        work = self._memory.work
+        prepared = plan.prepare(
+            self.model, work, state.c, state.points, state.clearance, state.plan, state.contacts,
+            goal, H, f, budget,
+        )  # fmt: skip
+        solved = plan.solve(self.model, work, prepared)
+        if solved.qps == 0 and solved.status in FAILURES:
+            return self._hold(state, FAILURES[solved.status], began)
+        outcome = decide(self.model, work, prepared, solved, goal, H, f)
+        return self._take(solved, outcome, began)
 
-    def _take(
-        self, state: MPCState, start: Stage, plan: Plan, target: Array, began: float
-    ) -> tuple[MPCState, Command]:
-        """Take as much of the plan's first step as is safe."""
-        terms = self.terms
-        safety = SafetyFilter(shape=terms.shape, limits=terms.increment_limits, dt=self.dt)
-        end, share = safety.accept(start, plan.found[0])
-        # The whole plan shrinks with the step, so that it stays reachable (notes B17).
-        c = start.c + share * (np.array([stage.c for stage in plan.found]) - start.c)
-        contacts = (*plan.contacts[1:], plan.contacts[-1])
-        after = MPCState(c=end.c, plan=np.concatenate([c[1:], c[-1:]]), contacts=contacts)
-        report = Report(
-            status=self._status(start, end, target),
-            solve_time=perf_counter() - began,
-            iterations=plan.iterations,
-            planes=plan.planes,
-            step_fraction=share,
-            points=end.points,
-            clearance=self._clearance(end),
-            active=plan.active,
+    def accept(self, c: ArrayLike, goal: ArrayLike) -> tuple[Array, float]:
+        """How much of one step straight from c (n,) to a goal (n,) the safety filter takes.
+
+        Returns the configuration (n,) it allows, and the share of the way that it is.
+        """
+        start, end = np.array(c, dtype=float), np.array(goal, dtype=float)
+        return filtered(self.model, self._memory.work, start, end)
+
+    def problem(self, state: MPCState, target: ArrayLike) -> DenseProblem:
+        """The first QP that a step from this state would solve, to look at or to solve elsewhere.
+
+        Arguments:
+            target: (3,) [m]
+        """
+        goal = np.array(target, dtype=float)
+        H, f = total_quadratics(self._further_costs, self.robot, state.plan, goal)
+        work = self._memory.work
+        prepared = plan.prepare(
+            self.model, work, state.c, state.points, state.clearance, state.plan, state.contacts,
+            goal, H, f, np.inf,
+        )  # fmt: skip
+        return DenseProblem.of(first_problem(work, prepared.rows))
+
+    def _take(self, solved: Solved, outcome: Outcome, began: float) -> tuple[MPCState, Command]:
+        after = MPCState(
+            c=outcome.c,
+            plan=outcome.plan,
+            contacts=outcome.contacts,
+            points=outcome.points,
+            clearance=outcome.clearance,
         )
-        return after, Command(rates=(end.lengths - start.lengths) / self.dt, report=report)
+        report = Report(
+            status=self._status(outcome),
+            solve_time=perf_counter() - began,
+            effort=Effort(
+                qps=solved.qps,
+                iterations=solved.iterations,
+                planes=solved.planes,
+                tests=outcome.tests,
+                halvings=outcome.halvings,
+                in_time=outcome.in_time,
+            ),
+            step_fraction=outcome.share,
+            points=outcome.points,
+            robot=self.robot,
+            zone=self.zone,
+            leaning=Leaning(
+                what=outcome.what,
+                index=outcome.which,
+                triangle=outcome.triangle,
+                strength=outcome.strength,
+            ),
+        )
+        return after, Command(rates=outcome.change / self.dt, report=report)
 
-    def _hold(
-        self, state: MPCState, start: Stage, reason: str, began: float
-    ) -> tuple[MPCState, Command]:
+    def _hold(self, state: MPCState, reason: str, began: float) -> tuple[MPCState, Command]:
         """Stay where the robot is, forget the plan and say why."""
         report = Report(
             status=Status.HOLDING,
             reason=reason,
             solve_time=perf_counter() - began,
-            iterations=0,
-            planes=0,
             step_fraction=0.0,
-            points=start.points,
-            clearance=self._clearance(start),
+            points=self.robot.points(state.c),
+            robot=self.robot,
+            zone=self.zone,
         )
         rates = np.zeros(len(self.robot.actuator_names))
         return self.init(state.c), Command(rates=rates, report=report)
 
-    def _clearance(self, stage: Stage) -> float:
-        return float(np.min(stage.walls.clearance - self.robot.radii))
-
-    def _status(self, start: Stage, end: Stage, target: Array) -> Status:
-        if any(floor(constraint.slack(end)) < 0.0 for constraint in self.terms.shape):
+    def _status(self, outcome: Outcome) -> Status:
+        if outcome.slack < 0.0:
             return Status.RECOVERING
-        if np.linalg.norm(end.tip - target) < ARRIVED:
+        if outcome.tip_error < ARRIVED:
             return Status.AT_TARGET
-        if np.linalg.norm(end.tip - start.tip) < STILL * self.dt:
+        if outcome.tip_moved < STILL * self.dt:
             return Status.BLOCKED
         return Status.TRACKING

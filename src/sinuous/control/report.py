@@ -1,9 +1,15 @@
 """What a controller hands back: a command and a report that certifies it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
+from functools import cached_property
+
+import numpy as np
 
 from sinuous.arrays import Array
+from sinuous.control.reading import Active, Leaning
+from sinuous.geometry.safe_zone import SafeZone
+from sinuous.robots.robot import Robot
 
 
 class Status(Enum):
@@ -17,45 +23,70 @@ class Status(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Active:
-    """A constraint that the robot leans on.
+class Effort:
+    """How much a step had to do.
 
     Arguments:
-        name: what it is, in words
-        multiplier: what relaxing it is worth, [cost / m] of wall or actuator
-        triangle: of the zone, -1 if it is not a wall
+        qps: solved
+        iterations: of the QP solver, over all QPs
+        planes: rows that stood in for the shape in the last QP
+        tests: shares of the step that the safety filter looked at
+        halvings: of the plan's change until it lowered the exact cost
+        in_time: whether the budget was enough
     """
 
-    name: str
-    multiplier: float
-    triangle: int = -1
+    qps: int = 0
+    iterations: int = 0
+    planes: int = 0
+    tests: int = 0
+    halvings: int = 0
+    in_time: bool = True
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Report:
     """The certificate of one control step.
+
+    What takes time and is not needed to go on is computed when first asked for.
 
     Arguments:
         status: how the step ended
         reason: why, if the robot holds still; empty otherwise
         solve_time: wall-clock time of the whole step [s]
-        iterations: QPs solved
-        planes: wall planes in the last QP
+        effort: how much it had to do
         step_fraction: share of the planned first step that the safety filter accepted
         points: nominal body points after the step (S, 3) [m]
-        clearance: least nominal body clearance after the step [m], negative beyond the wall
-        active: constraints with a multiplier, the strongest first
     """
 
     status: Status
     reason: str = ""
     solve_time: float
-    iterations: int
-    planes: int
+    effort: Effort = field(default_factory=Effort)
     step_fraction: float
     points: Array
-    clearance: float
-    active: tuple[Active, ...] = ()
+    robot: Robot = field(repr=False)
+    zone: SafeZone = field(repr=False)
+    leaning: Leaning = field(default_factory=Leaning, repr=False)
+
+    @property
+    def iterations(self) -> int:
+        """QPs solved."""
+        return self.effort.qps
+
+    @property
+    def planes(self) -> int:
+        """Wall planes in the last QP."""
+        return self.effort.planes
+
+    @cached_property
+    def clearance(self) -> float:
+        """Least nominal body clearance after the step [m], negative beyond the wall."""
+        return float(np.min(self.zone.clearance(self.points) - self.robot.radii))
+
+    @cached_property
+    def active(self) -> tuple[Active, ...]:
+        """Constraints with a multiplier, the strongest first."""
+        return self.leaning.describe(self.robot, self.zone)
 
 
 @dataclass(frozen=True, kw_only=True)

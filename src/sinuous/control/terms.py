@@ -1,17 +1,18 @@
-"""What a controller wants and what it must not do, as small objects.
+"""What a controller wants, as small objects that add up.
 
-A cost contributes a quadratic around the predicted configuration, a constraint contributes
-linear rows.  The solver loop adds them up and knows none of them by name.  Coordinates are
-delta = c - c_bar of one stage of the horizon, or the increment v from one stage to the next.
+The costs of this module are weights of a form that the compiled step knows; any other object
+with the method `quadratic` is a cost too, by its second-order model around each predicted
+configuration.  The solver loop knows none of them by name.
 """
 
-from dataclasses import dataclass
-from typing import Protocol
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from sinuous.arrays import Array
-from sinuous.control.stage import Stage, actuator_metric
+from sinuous.control.metric import actuator_metric
 from sinuous.robots.robot import Robot
 
 # Step rate at which paper B states its input weight [Hz]. The weight is applied to the
@@ -21,41 +22,44 @@ PRINTED_RATE = 30.0
 
 @dataclass(frozen=True, kw_only=True)
 class Quadratic:
-    """The cost 1/2 delta' H delta + g' delta."""
+    """The cost 1/2 delta' H delta + g' delta of a change delta of the configuration."""
 
     hessian: Array  # (n, n), positive semi-definite
     gradient: Array  # (n,)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rows:
-    """The conditions lower <= A delta <= upper, in metres.
+class Weights:
+    """tip |p - target|^2 + posture |P M (c - home)|^2 + 1/2 c' Q c + q' c.
+
+    p is the tip, P projects on the tip's null space, M measures in actuator metres.
 
     Arguments:
-        jacobian: A (m, n)
-        lower, upper: (m,), infinite where there is no condition
-        names: what each row means, for reports; empty for what is no limit of the robot
+        tip, posture: weights
+        Q, q: (n, n), (n,), zero if None
     """
 
-    jacobian: Array
-    lower: Array
-    upper: Array
-    names: tuple[str, ...]
+    tip: float = 0.0
+    posture: float = 0.0
+    Q: Array | None = None
+    q: Array | None = None
 
 
-class Cost(Protocol):
-    """A cost of one predicted configuration."""
+@runtime_checkable
+class WeightedCost(Protocol):
+    """A cost of each predicted configuration in the form that is compiled."""
 
-    def quadratic(self, stage: Stage, target: Array) -> Quadratic:
-        """Its second-order model at the stage; target (3,) [m]."""
+    def weights(self, robot: Robot) -> Weights:
+        """Its weights; those of all costs are added up."""
         ...
 
-    def force(self, stage: Stage, target: Array) -> Array | None:
-        """Its gradient (3,) by the tip's position, if it has one, for the curvature."""
-        ...
 
-    def value(self, stage: Stage, target: Array, around: Stage) -> float:
-        """What it amounts to at a stage near `around`, where the model was taken."""
+@runtime_checkable
+class QuadraticCost(Protocol):
+    """Any other cost of each predicted configuration."""
+
+    def quadratic(self, robot: Robot, c: Array, target: Array) -> Quadratic:
+        """Its second-order model around the configuration c (n,); target (3,) [m]."""
         ...
 
 
@@ -63,23 +67,7 @@ class IncrementCost(Protocol):
     """A quadratic cost of the increments v between stages."""
 
     def hessian(self, robot: Robot) -> Array:
-        """H (n, n) of 1/2 v' H v."""
-        ...
-
-
-class StateLimit(Protocol):
-    """Hard linear limits of a predicted configuration; convex, and kept exactly."""
-
-    def rows(self, stage: Stage) -> Rows: ...
-
-
-class IncrementLimit(Protocol):
-    """Limits of the increments v, of which standing still is always one solution."""
-
-    def rows(self, stage: Stage, dt: float) -> Rows: ...
-
-    def fraction(self, start: Stage, end: Stage, dt: float) -> float:
-        """Largest share of the step from start to end that the limit allows."""
+        """H (n, n) of 1/2 v' H v, positive definite."""
         ...
 
 
@@ -89,18 +77,8 @@ class TipError:
 
     weight: float
 
-    def quadratic(self, stage: Stage, target: Array) -> Quadratic:
-        J = stage.jacobian[-1]
-        return Quadratic(
-            hessian=2.0 * self.weight * J.T @ J,
-            gradient=2.0 * self.weight * J.T @ (stage.tip - target),
-        )
-
-    def force(self, stage: Stage, target: Array) -> Array:
-        return 2.0 * self.weight * (stage.tip - target)
-
-    def value(self, stage: Stage, target: Array, around: Stage) -> float:
-        return self.weight * float(np.sum((stage.tip - target) ** 2))
+    def weights(self, robot: Robot) -> Weights:
+        return Weights(tip=self.weight)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,19 +91,8 @@ class Posture:
 
     weight: float
 
-    def quadratic(self, stage: Stage, target: Array) -> Quadratic:
-        pull = stage.tip_null_space
-        return Quadratic(
-            hessian=2.0 * self.weight * pull.T @ pull,
-            gradient=2.0 * self.weight * pull.T @ pull @ (stage.c - stage.robot.home),
-        )
-
-    def force(self, stage: Stage, target: Array) -> None:
-        return None
-
-    def value(self, stage: Stage, target: Array, around: Stage) -> float:
-        pulled = around.tip_null_space @ (stage.c - stage.robot.home)
-        return self.weight * float(pulled @ pulled)
+    def weights(self, robot: Robot) -> Weights:
+        return Weights(posture=self.weight)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,17 +101,10 @@ class PrintedLengths:
 
     weight: float
 
-    def quadratic(self, stage: Stage, target: Array) -> Quadratic:
-        A = stage.robot.lengths_jacobian(stage.c)
-        return Quadratic(
-            hessian=2.0 * self.weight * A.T @ A, gradient=2.0 * self.weight * A.T @ stage.lengths
-        )
-
-    def force(self, stage: Stage, target: Array) -> None:
-        return None
-
-    def value(self, stage: Stage, target: Array, around: Stage) -> float:
-        return self.weight * float(np.sum(stage.lengths**2))
+    def weights(self, robot: Robot) -> Weights:
+        A = robot.lengths_jacobian(robot.home)
+        offset = robot.lengths(robot.home) - A @ robot.home
+        return Weights(Q=2.0 * self.weight * A.T @ A, q=2.0 * self.weight * A.T @ offset)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,77 +119,61 @@ class Effort:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ActuatorLengths:
-    """Shortest and longest actuator lengths (15), within a trust region around the prediction.
+class Costs:
+    """What the controller minimises over the horizon.
 
     Arguments:
-        trust: largest change of an actuator from its predicted length [m]
+        state: costs of each predicted configuration
+        effort: cost of the increments
     """
 
-    trust: float
+    state: tuple[WeightedCost | QuadraticCost, ...] = (TipError(weight=1e5), Posture(weight=5.0))
+    effort: IncrementCost = field(default_factory=lambda: Effort(weight=0.1))
 
-    def rows(self, stage: Stage) -> Rows:
-        robot = stage.robot
-        lower, upper = _room(robot.length_limits, stage.lengths)
-        limited = (lower > -self.trust) | (upper < self.trust)
-        own = np.flatnonzero(np.any(np.isfinite(robot.coordinate_limits), axis=1))
-        least, most = _room(robot.coordinate_limits[own], stage.c[own])
-        names = [
-            f"{name} at its length limit" if near else ""
-            for name, near in zip(robot.actuator_names, limited, strict=True)
-        ]
-        names += [f"{robot.coordinate_names[k]} at its limit" for k in own]
-        return Rows(
-            jacobian=np.concatenate([robot.lengths_jacobian(stage.c), np.eye(len(stage.c))[own]]),
-            lower=np.concatenate([np.maximum(lower, -self.trust), least]),
-            upper=np.concatenate([np.minimum(upper, self.trust), most]),
-            names=tuple(names),
+    @classmethod
+    def printed(cls) -> "Costs":
+        """The cost (10) with the weights of paper B III-B; it has a steady error (notes B5)."""
+        return cls(
+            state=(TipError(weight=1000.0), PrintedLengths(weight=10.0)),
+            effort=Effort(weight=10.0),
         )
 
 
-def _room(limits: Array, values: Array) -> tuple[Array, Array]:
-    """Changes that keep values within limits (k, 2).
+def total_weights(costs: Sequence[WeightedCost | QuadraticCost], robot: Robot) -> Weights:
+    """The weights of all costs that have some, added up."""
+    parts = [cost.weights(robot) for cost in costs if isinstance(cost, WeightedCost)]
+    n = len(robot.home)
+    return Weights(
+        tip=sum(part.tip for part in parts),
+        posture=sum(part.posture for part in parts),
+        Q=sum((part.Q for part in parts if part.Q is not None), start=np.zeros((n, n))),
+        q=sum((part.q for part in parts if part.q is not None), start=np.zeros(n)),
+    )
 
-    A prediction that is out of limits by rounding must not make the problem infeasible.
+
+def further_costs(
+    costs: Sequence[WeightedCost | QuadraticCost],
+) -> tuple[QuadraticCost, ...]:
+    """Those that are not weights."""
+    return tuple(cost for cost in costs if not isinstance(cost, WeightedCost))
+
+
+def total_quadratics(
+    costs: Sequence[QuadraticCost], robot: Robot, predicted: Array, target: Array
+) -> tuple[Array, Array]:
+    """Hessians (N, n, n) and gradients (N, n) of all costs, empty if there are none.
+
+    Arguments:
+        predicted: configurations (N, n)
+        target: (3,) [m]
     """
-    return np.minimum(limits[:, 0] - values, 0.0), np.maximum(limits[:, 1] - values, 0.0)
-
-
-@dataclass(frozen=True, kw_only=True)
-class ActuatorRates:
-    """Slowest and fastest actuator rates (16)."""
-
-    def rows(self, stage: Stage, dt: float) -> Rows:
-        limits = stage.robot.rate_limits * dt
-        return Rows(
-            jacobian=stage.robot.lengths_jacobian(stage.c),
-            lower=limits[:, 0],
-            upper=limits[:, 1],
-            names=tuple(f"{name} at its speed limit" for name in stage.robot.actuator_names),
-        )
-
-    def fraction(self, start: Stage, end: Stage, dt: float) -> float:
-        change = end.lengths - start.lengths
-        limits = start.robot.rate_limits * dt
-        excess = np.maximum(change / limits[:, 1], change / limits[:, 0])
-        return float(1.0 / max(1.0, np.max(excess)))
-
-
-@dataclass(frozen=True, kw_only=True)
-class TipSpeed:
-    """Largest speed of the tip [m/s].
-
-    In the plan it is a box around the increment; the share of the step that is taken makes
-    the speed itself exact.
-    """
-
-    limit: float
-
-    def rows(self, stage: Stage, dt: float) -> Rows:
-        reach = np.full(3, self.limit * dt)
-        names = ("tip at its speed limit",) * 3
-        return Rows(jacobian=stage.jacobian[-1], lower=-reach, upper=reach, names=names)
-
-    def fraction(self, start: Stage, end: Stage, dt: float) -> float:
-        moved = float(np.linalg.norm(end.tip - start.tip))
-        return min(1.0, self.limit * dt / moved) if moved > 0.0 else 1.0
+    N, n = predicted.shape
+    if not costs:
+        return np.zeros((0, n, n)), np.zeros((0, n))
+    H, f = np.zeros((N, n, n)), np.zeros((N, n))
+    for i, c in enumerate(predicted):
+        for cost in costs:
+            model = cost.quadratic(robot, c, target)
+            H[i] += model.hessian
+            f[i] += model.gradient
+    return H, f

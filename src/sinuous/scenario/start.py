@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sinuous.control.stage import Stage
+from sinuous.arrays import Array
 from sinuous.errors import InputError
 from sinuous.scenario.scenario import Scenario
 
@@ -15,16 +15,16 @@ def check_start(scenario: Scenario) -> None:
     Raises:
         InputError: naming the wall, how far beyond the margin the body is, and the remedy
     """
-    stage = scenario.mpc.stage(scenario.first_configuration)
-    _check_bend(scenario, stage)
-    walls = scenario.mpc.walls
-    slack = np.where(walls.movable, stage.walls.clearance - walls.required, np.inf)
+    c, robot = scenario.first_configuration, scenario.robot
+    _check_bend(scenario, robot.bend_slack(c))
+    slack = scenario.mpc.slack(c)
     worst = int(np.argmin(slack))
     if slack[worst] >= 0.0 or scenario.recover:
         return
-    clearance = stage.walls.clearance[worst] - scenario.robot.radii[worst]
-    where = scenario.robot.point_name(worst)
-    wall = scenario.zone.describe_triangle(int(stage.walls.triangle[worst]))
+    near = scenario.zone.nearest(robot.points(c)[worst])
+    clearance = float(near.clearance) - robot.radii[worst]
+    where = robot.point_name(worst)
+    wall = scenario.zone.describe_triangle(int(near.triangle))
     if clearance < 0.0:
         found = f"{where} {-clearance * MM_PER_M:.3g} mm beyond {wall}"
     else:
@@ -40,11 +40,11 @@ def check_start(scenario: Scenario) -> None:
     )
 
 
-def _check_bend(scenario: Scenario, stage: Stage) -> None:
+def _check_bend(scenario: Scenario, bend_slack: Array) -> None:
     """Lengths are checked with the file; the bend follows from all of them together."""
-    slack = np.min(stage.bend_slack, initial=np.inf)
+    slack = np.min(bend_slack, initial=np.inf)
     if slack < 0.0:
-        name = scenario.robot.bend_names[int(np.argmin(stage.bend_slack))]
+        name = scenario.robot.bend_names[int(np.argmin(bend_slack))]
         raise InputError(
             file=scenario.file,
             field="robot.start_lengths",

@@ -1,0 +1,101 @@
+"""The numbers of a controller as arrays for the compiled step."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sinuous.arrays import Array, IntArray
+from sinuous.control.metric import actuator_metric
+from sinuous.control.step import assemble
+from sinuous.control.step.data import Limits, Model
+from sinuous.control.terms import Costs, total_weights
+from sinuous.geometry.safe_zone import SafeZone
+from sinuous.robots.robot import Robot
+
+ROUNDING = 1e-14  # coefficients below this share of the largest are zero
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """Numbers that steer a controller.
+
+    Arguments:
+        margin: [m]
+        dt: [s]
+        tip_speed: [m/s], infinite for no limit
+        trust: largest change of an actuator from its predicted length [m]
+        reserve, near, rounds, late: see `step.data.Rules`
+    """
+
+    margin: float
+    dt: float
+    tip_speed: float
+    trust: float
+    reserve: float
+    near: float
+    rounds: int
+    late: float
+
+
+def make_model(*, robot: Robot, zone: SafeZone, costs: Costs, settings: Settings) -> Model:
+    """Collect what a step reads."""
+    metric = actuator_metric(robot)
+    inverse = _plain(np.asarray(np.linalg.inv(metric), dtype=np.float64))
+    step = float(np.max(robot.rate_limits)) * settings.dt
+    weights, E = total_weights(costs.state, robot), costs.effort.hessian(robot)
+    n = len(robot.home)
+    Q = np.zeros((n, n)) if weights.Q is None else weights.Q
+    q = np.zeros(n) if weights.q is None else weights.q
+    body = assemble.body(
+        robot.chain,
+        _plain(robot.T_w_b),
+        robot.required_distance(settings.margin),
+        robot.movable,
+        zone.arrays,
+        zone.grid,
+    )
+    aims = assemble.aims(weights.tip, weights.posture, _plain(Q), q, _plain(E), robot.home)
+    scale = assemble.scale(
+        step,
+        metric,
+        inverse,
+        _plain(step**2 * inverse.T @ Q @ inverse),
+        _plain(step**2 * inverse.T @ E @ inverse),
+    )
+    rules = assemble.rules(settings.reserve, settings.near, settings.rounds, settings.late)
+    bends = assemble.bends(*robot.bend_limits)
+    return assemble.model(body, bends, _limits(robot, inverse, settings), aims, scale, rules)
+
+
+def _limits(robot: Robot, inverse: Array, settings: Settings) -> Limits:
+    """Limits of actuators, and of coordinates that no actuator's limits imply."""
+    own = np.flatnonzero(np.any(np.isfinite(robot.coordinate_limits), axis=1))
+    lengths = robot.lengths_jacobian(robot.home)
+    A = np.concatenate([lengths, np.eye(len(robot.home))[own]])
+    offset = robot.lengths(robot.home) - lengths @ robot.home
+    scaled = A @ inverse
+    low, high = np.concatenate([robot.length_limits, robot.coordinate_limits[own]]).T
+    slowest, fastest = robot.rate_limits.T * settings.dt
+    return assemble.limits(
+        _plain(A),
+        np.concatenate([offset, np.zeros(len(own))]),
+        _plain(scaled),
+        *_spans(scaled),
+        _plain(low),
+        _plain(high),
+        _plain(slowest),
+        _plain(fastest),
+        settings.trust,
+        settings.tip_speed * settings.dt,
+    )
+
+
+def _plain(values: Array) -> Array:
+    """The layout that compiled code takes."""
+    return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def _spans(rows: Array) -> tuple[IntArray, IntArray]:
+    """First and one past the last coefficient of every row that is not zero."""
+    used = np.abs(rows) > ROUNDING * np.max(np.abs(rows))
+    return np.argmax(used, axis=1), rows.shape[1] - np.argmax(used[:, ::-1], axis=1)

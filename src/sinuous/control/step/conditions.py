@@ -1,0 +1,345 @@
+"""Rows of the QP: limits of the actuators, which are hard, and cuts of the shape, which are soft.
+
+The distance to one triangle is convex, so its tangent plane never promises more room than there
+is.  The distance to a mesh is not: one plane per point misses the other walls (notes B8).  So
+the cuts start from each point's nearest triangle; the solution is checked against the whole
+mesh, and the triangles it violates join as planes taken at the old point.
+"""
+
+import numpy as np
+
+from sinuous.arrays import Array, IntArray
+from sinuous.compiled import kernel
+from sinuous.control.step.data import (
+    BEND,
+    RATE_LIMIT,
+    STATE_LIMIT,
+    TIP_SPEED,
+    WALL,
+    Contacts,
+    Meaning,
+    Model,
+    Motion,
+    Problem,
+    Scratch,
+    Shape,
+)
+from sinuous.control.step.interior import (
+    FIRST,
+    INCREMENT,
+    KIND,
+    LAST,
+    LOWER,
+    PRICE,
+    STAGE,
+    STATE,
+    UPPER,
+    Rows,
+)
+from sinuous.control.step.look import bend_slack
+from sinuous.geometry.bvh import plane
+from sinuous.robots import pcc_kernels
+
+# Planes of one stage that join at a time, the tightest first: without a bound a body deep in the
+# wall would stall the solver.
+MOST = 24
+
+# Walls that yield less than this per unit of every coordinate cannot be steered away from.
+IMMOVABLE = 1e-6
+
+# Bend limits with less cable travel left than this get a row from the start [m]; every row is
+# kept so much short of its limit, because the tangent allows too much (notes B10).
+NEAR_BEND, BEND_RESERVE = 0.002, 1e-5
+
+STRAIGHT = 1e-9  # bends below this have no direction worth naming [rad]
+
+
+@kernel
+def hard_rows(model: Model, start: Array, old: Shape, motion: Motion, problem: Problem) -> int:
+    """Limits of every stage and of the increment that leads to it; returns their number."""
+    limits, scale, rows, meaning = model.limits, model.scale, problem.rows, problem.meaning
+    K, P, n, count = limits.low.size, limits.slowest.size, start.size, 0
+    step = scale.step
+    for i in range(old.c.shape[0]):
+        for k in range(K):
+            now, predicted = limits.b[k], limits.b[k]
+            for j in range(n):
+                now += limits.A[k, j] * start[j]
+                predicted += limits.A[k, j] * old.c[i, j]
+            # A prediction that is out of limits by rounding must not make this infeasible.
+            low, high = min(limits.low[k] - predicted, 0.0), max(limits.high[k] - predicted, 0.0)
+            if k < P:
+                # What the rates cannot reach by then is no condition.
+                if now + (i + 1) * limits.slowest[k] >= limits.low[k]:
+                    low = -np.inf
+                if now + (i + 1) * limits.fastest[k] <= limits.high[k]:
+                    high = np.inf
+                low, high = max(low, -limits.trust), min(high, limits.trust)
+            if np.isfinite(low) or np.isfinite(high):
+                _write_limit(rows, meaning, count, limits.scaled, limits.first, limits.last, k)
+                rows.bound[count, LOWER], rows.bound[count, UPPER] = low / step, high / step
+                rows.place[count, STAGE], rows.place[count, KIND] = i, STATE
+                near = low > -limits.trust or high < limits.trust
+                meaning.what[count], meaning.index[count] = STATE_LIMIT, k if near else -1
+                count += 1
+        for k in range(P):
+            moved = 0.0
+            for j in range(n):
+                before = old.c[i - 1, j] if i > 0 else start[j]
+                moved += limits.A[k, j] * (old.c[i, j] - before)
+            _write_limit(rows, meaning, count, limits.scaled, limits.first, limits.last, k)
+            # The prediction itself stays allowed when it is out of limits by rounding.
+            rows.bound[count, LOWER] = min(limits.slowest[k] - moved, 0.0) / step
+            rows.bound[count, UPPER] = max(limits.fastest[k] - moved, 0.0) / step
+            rows.place[count, STAGE], rows.place[count, KIND] = i, INCREMENT
+            meaning.what[count], meaning.index[count] = RATE_LIMIT, k
+            count += 1
+        if np.isfinite(limits.tip_step):
+            for d in range(3):
+                moved = 0.0
+                for j in range(n):
+                    for m in range(n):
+                        before = old.c[i - 1, m] if i > 0 else start[m]
+                        moved += motion.tip[i, d, j] * scale.metric[j, m] * (old.c[i, m] - before)
+                for j in range(n):
+                    rows.a[count, j] = motion.tip[i, d, j] / step
+                rows.place[count, FIRST], rows.place[count, LAST] = 0, n
+                moved /= step
+                rows.bound[count, LOWER] = min(-limits.tip_step - moved, 0.0) / step
+                rows.bound[count, UPPER] = max(limits.tip_step - moved, 0.0) / step
+                rows.place[count, STAGE], rows.place[count, KIND] = i, INCREMENT
+                meaning.what[count], meaning.index[count] = TIP_SPEED, d
+                count += 1
+    for k in range(count):
+        rows.bound[k, PRICE] = np.inf
+        meaning.slot[k], meaning.size[k] = -1, 1.0
+    return count
+
+
+@kernel
+def _write_limit(
+    rows: Rows, meaning: Meaning, count: int, scaled: Array, first: IntArray, last: IntArray, k: int
+) -> None:
+    for j in range(first[k], last[k]):
+        rows.a[count, j] = scaled[k, j]
+    rows.place[count, FIRST], rows.place[count, LAST] = first[k], last[k]
+
+
+@kernel
+def first_cuts(
+    model: Model,
+    old: Shape,
+    motion: Motion,
+    contacts: Contacts,
+    problem: Problem,
+    count: int,
+    scratch: Scratch,
+) -> int:
+    """Cuts around the predicted stages, those for the last plan's contacts among them.
+
+    Returns the number of rows there are now.
+    """
+    body, rules = model.body, model.rules
+    for i in range(old.c.shape[0]):
+        for j in range(model.bends.theta.size):
+            if bend_slack(model.bends, j, old.c[i]) < NEAR_BEND:
+                count = _add_bend(model, problem, count, i, j, old.c[i], scratch)
+        number = 0
+        for s in range(body.required.size):
+            room = old.clearance[i, s] - body.required[s] - rules.reserve
+            if body.movable[s] and old.exact[i, s] and room < rules.near:
+                scratch.number[number], scratch.amount[number] = s, room
+                number += 1
+        for k in range(_tightest(scratch, number)):
+            s = scratch.number[k]
+            count = _add_plane(model, old, motion, problem, count, i, s, old.slot[i, s], scratch)
+        for k in range(contacts.number[i]):
+            s, slot = contacts.point[i, k], contacts.slot[i, k]
+            if not old.exact[i, s] or old.slot[i, s] != slot:
+                count = _add_plane(model, old, motion, problem, count, i, s, slot, scratch)
+    return count
+
+
+@kernel
+def violated_cuts(
+    model: Model,
+    old: Shape,
+    new: Shape,
+    motion: Motion,
+    problem: Problem,
+    hard: int,
+    count: int,
+    y: Array,
+    scratch: Scratch,
+    tolerance: float,
+) -> tuple[int, int]:
+    """Cut off what the new stages violate; returns the rows there are now and what was cut.
+
+    Where a row itself holds and only the curvature of the kinematics is to blame, its slack is
+    lowered by what linearisation missed (a second-order correction).
+    """
+    body, rules, changed = model.body, model.rules, 0
+    for i in range(old.c.shape[0]):
+        allowed = tolerance if i == 0 else max(tolerance, rules.late)
+        for j in range(model.bends.theta.size):
+            left = bend_slack(model.bends, j, new.c[i])
+            if left < BEND_RESERVE - min(allowed, 0.5 * BEND_RESERVE):
+                k = _find(problem, hard, count, i, BEND, j, -1)
+                if k < 0:
+                    k = count
+                    count = _add_bend(model, problem, count, i, j, old.c[i], scratch)
+                if k < count:
+                    _lower(model, problem, k, y, left - BEND_RESERVE)
+                    changed += 1
+        number = 0
+        for s in range(body.required.size):
+            room = new.clearance[i, s] - body.required[s] - rules.reserve
+            if body.movable[s] and new.exact[i, s] and room < -allowed:
+                scratch.number[number], scratch.amount[number] = s, room
+                number += 1
+        for m in range(_tightest(scratch, number)):
+            s, room = scratch.number[m], scratch.amount[m]
+            k = _find(problem, hard, count, i, WALL, s, new.slot[i, s])
+            if k < 0:
+                k = count
+                slot = new.slot[i, s]
+                count = _add_plane(model, old, motion, problem, count, i, s, slot, scratch)
+            if k < count:
+                _lower(model, problem, k, y, room)
+                changed += 1
+    return count, changed
+
+
+@kernel
+def _tightest(scratch: Scratch, number: int) -> int:
+    """Bring the least amounts to the front and return how many of them are to be used."""
+    use = min(number, MOST)
+    if number > MOST:
+        for k in range(use):
+            least = k
+            for m in range(k + 1, number):
+                if scratch.amount[m] < scratch.amount[least]:
+                    least = m
+            amount, index = scratch.amount[k], scratch.number[k]
+            scratch.amount[k], scratch.number[k] = scratch.amount[least], scratch.number[least]
+            scratch.amount[least], scratch.number[least] = amount, index
+    return use
+
+
+@kernel
+def _find(problem: Problem, hard: int, count: int, i: int, what: int, index: int, slot: int) -> int:
+    """The soft row of a stage with this meaning, -1 if there is none."""
+    meaning, place = problem.meaning, problem.rows.place
+    for k in range(hard, count):
+        same = meaning.what[k] == what and meaning.index[k] == index and meaning.slot[k] == slot
+        if same and place[k, STAGE] == i:
+            return k
+    return -1
+
+
+@kernel
+def _lower(model: Model, problem: Problem, k: int, y: Array, exact: float) -> None:
+    """Lower the slack of row k to what it really was at y, if it promised more [m]."""
+    rows, promised = problem.rows, -problem.rows.bound[k, LOWER]
+    for j in range(y.shape[1]):
+        promised += rows.a[k, j] * y[rows.place[k, STAGE], j]
+    unit = model.scale.step * problem.meaning.size[k]
+    rows.bound[k, LOWER] += max(promised - exact / unit, 0.0)
+
+
+@kernel
+def _add_plane(
+    model: Model,
+    old: Shape,
+    motion: Motion,
+    problem: Problem,
+    count: int,
+    i: int,
+    s: int,
+    slot: int,
+    scratch: Scratch,
+) -> int:
+    """Add the plane of one triangle seen from body point s at stage i."""
+    body, own = model.body, old.exact[i, s] and old.slot[i, s] == slot
+    if own:
+        # The nearest triangle of a point carries the sign and gradient of the zone itself.
+        d = old.clearance[i, s]
+        nx, ny, nz = old.gradient[i, s, 0], old.gradient[i, s, 1], old.gradient[i, s, 2]
+    elif old.clearance[i, s] < 0.0:
+        return count  # from outside, only the nearest wall shows the way back in
+    else:
+        x, y, z = old.points[i, s, 0], old.points[i, s, 1], old.points[i, s, 2]
+        d, nx, ny, nz = plane(body.zone, slot, x, y, z)
+    c, J, row = old.c[i], scratch.J, scratch.row
+    pcc_kernels.point_jacobian(
+        body.chain, s, c, motion.R[i], motion.p[i], motion.ends[i], motion.spins[i], J
+    )
+    largest = 0.0
+    for j in range(c.size):
+        row[j] = nx * J[0, j] + ny * J[1, j] + nz * J[2, j]
+        largest = max(largest, abs(row[j]))
+    if largest <= IMMOVABLE:
+        return count
+    slack = d - body.required[s] - model.rules.reserve
+    return _add(model, problem, count, i, row, slack, WALL, s, slot, nx, ny, nz)
+
+
+@kernel
+def _add_bend(
+    model: Model, problem: Problem, count: int, i: int, j: int, c: Array, scratch: Scratch
+) -> int:
+    """Add the tangent of bend limit j at stage i."""
+    bends, row = model.bends, scratch.row
+    theta, pitch = bends.theta[j], bends.pitch[j]
+    x, y = c[theta], c[theta + 1]
+    bend = np.sqrt(x * x + y * y)
+    for k in range(c.size):
+        row[k] = pitch * bends.slope[j, k]
+    if bend > STRAIGHT:
+        row[theta] -= pitch * x / bend
+        row[theta + 1] -= pitch * y / bend
+    largest = 0.0
+    for k in range(c.size):
+        largest = max(largest, abs(row[k]))
+    if largest == 0.0:
+        return count  # a straight segment of fixed length can bend any way
+    slack = bend_slack(bends, j, c) - BEND_RESERVE
+    return _add(model, problem, count, i, row, slack, BEND, j, -1, 0.0, 0.0, 0.0)
+
+
+@kernel
+def _add(
+    model: Model,
+    problem: Problem,
+    count: int,
+    i: int,
+    row: Array,
+    slack: float,
+    what: int,
+    index: int,
+    slot: int,
+    nx: float,
+    ny: float,
+    nz: float,
+) -> int:
+    """Add the soft row slack + row delta >= 0, scaled to norm one."""
+    rows, meaning, inverse = problem.rows, problem.meaning, model.scale.inverse
+    n, total = row.size, 0.0
+    if count >= rows.bound.shape[0]:
+        return count
+    for j in range(n):
+        value = 0.0
+        for k in range(n):
+            value += row[k] * inverse[k, j]
+        rows.a[count, j] = value
+        total += value * value
+    size = np.sqrt(total)
+    for j in range(n):
+        rows.a[count, j] /= size
+    rows.place[count, FIRST], rows.place[count, LAST] = 0, n
+    rows.bound[count, LOWER], rows.bound[count, UPPER] = -slack / (model.scale.step * size), np.inf
+    rows.place[count, STAGE], rows.place[count, KIND] = i, STATE
+    meaning.what[count], meaning.index[count], meaning.slot[count] = what, index, slot
+    meaning.normal[count, 0], meaning.normal[count, 1], meaning.normal[count, 2] = nx, ny, nz
+    meaning.size[count] = size
+    return count + 1
