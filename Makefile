@@ -55,4 +55,5 @@ else
 	VIRTUAL_ENV=$(CURDIR)/.venv $(UV) pip sync --quiet --require-hashes requirements.lock
 	VIRTUAL_ENV=$(CURDIR)/.venv $(UV) pip install --quiet --no-deps -e .
 endif
+	$(BIN)/python -m sinuous.precompile
 	touch $@

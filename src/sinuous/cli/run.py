@@ -2,7 +2,6 @@
 
 import sys
 from pathlib import Path
-from threading import Timer
 
 from rich.console import Console
 
@@ -16,30 +15,17 @@ from sinuous.session import run as run_scenario
 from sinuous.session.folder import FIGURES
 from sinuous.view import print_summary, save_figures
 
-PATIENCE = 3.0  # [s] after which a user wants to know what takes so long
-COMPILING = "Still preparing: the first run on a machine compiles the inner loops, half a minute."
 CODES = {End.FINISHED: GOOD, End.INTERRUPTED: INTERRUPTED, End.PLANT_FAILED: NEGATIVE}
 
 
 def run(arguments: Run) -> int:
     """Run a scenario and show what happened."""
     console = Console()
-    hint = Timer(PATIENCE, console.print, [COMPILING])
-    hint.daemon = True
-    hint.start()
-    try:
-        scenario = load_scenario(arguments.scenario, set=assignments(arguments.set))
-        with RunProgress(console, scenario) as progress:
-
-            def started() -> None:
-                hint.cancel()
-                progress.start()
-
-            result = run_scenario(
-                scenario, out=arguments.out, started=started, observe=progress.observe
-            )
-    finally:
-        hint.cancel()
+    scenario = load_scenario(arguments.scenario, set=assignments(arguments.set))
+    with RunProgress(console, scenario) as progress:
+        result = run_scenario(
+            scenario, out=arguments.out, started=progress.start, observe=progress.observe
+        )
     print_summary(console, result.summary, title=scenario.name)
     figures = _save_figures(result, Path(arguments.out) / FIGURES)
     console.print(f"Recording, summary and figures: {arguments.out}", markup=False, soft_wrap=True)
