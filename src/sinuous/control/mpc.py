@@ -139,7 +139,8 @@ class ShapeConstrainedMPC:
         return further_costs(self.costs.state)
 
     @cached_property
-    def _memory(self) -> Memory:
+    def memory(self) -> Memory:
+        """Scratch of the steps, for each thread its own."""
         return Memory(self.model, self.horizon)
 
     def slack(self, c: ArrayLike) -> Array:
@@ -152,8 +153,8 @@ class ShapeConstrainedMPC:
 
     def init(self, c: ArrayLike) -> MPCState:
         """The state to start from, at rest at configuration c (n,)."""
-        start = np.array(c, dtype=float)
-        N = self.horizon
+        start, N = np.array(c, dtype=float), self.horizon
+        _ = self.memory  # so that the first step takes no longer than others
         return MPCState(
             c=start,
             plan=np.tile(start, (N, 1)),
@@ -176,7 +177,7 @@ class ShapeConstrainedMPC:
             return self._hold(state, "the target is not three finite numbers", began)
         H, f = total_quadratics(self._further_costs, self.robot, state.plan, goal)
         budget = np.inf if self.budget is None else self.budget
-        work = self._memory.work
+        work = self.memory.work
         prepared = plan.prepare(
             self.model, work, state.c, state.points, state.clearance, state.plan, state.contacts,
             goal, H, f, budget,
@@ -193,7 +194,7 @@ class ShapeConstrainedMPC:
         Returns the configuration (n,) it allows, and the share of the way that it is.
         """
         start, end = np.array(c, dtype=float), np.array(goal, dtype=float)
-        return filtered(self.model, self._memory.work, start, end)
+        return filtered(self.model, self.memory.work, start, end)
 
     def problem(self, state: MPCState, target: ArrayLike) -> DenseProblem:
         """The first QP that a step from this state would solve, to look at or to solve elsewhere.
@@ -203,7 +204,7 @@ class ShapeConstrainedMPC:
         """
         goal = np.array(target, dtype=float)
         H, f = total_quadratics(self._further_costs, self.robot, state.plan, goal)
-        work = self._memory.work
+        work = self.memory.work
         prepared = plan.prepare(
             self.model, work, state.c, state.points, state.clearance, state.plan, state.contacts,
             goal, H, f, np.inf,

@@ -16,6 +16,7 @@ from sinuous.geometry.triangle import closest
 
 CELLS = 2**17  # about so many in all: a few megabytes, built in a fraction of a second
 FINEST = 2e-4  # smallest edge of a cell, as a share of the zone's largest coordinate
+AFAR = 4.0  # edges: how far the second bound looks
 ROUNDING = 1e-12  # share of the zone's largest coordinate by which every bound is lowered
 
 
@@ -133,6 +134,31 @@ def at_least(grid: Grid, cell: int, x: float, y: float, z: float) -> float:
     cx, cy, cz = centre(grid, cell)
     dx, dy, dz = x - cx, y - cy, z - cz
     return float(grid.bound[cell]) - np.sqrt(dx * dx + dy * dy + dz * dz)
+
+
+@inner
+def at_least_from_afar(grid: Grid, cell: int, x: float, y: float, z: float) -> float:
+    """A second, mostly better bound for a point that is known to be on the free side.
+
+    The wall seen from a few cells farther away is nearly behind the point, so little is lost.
+    What is known there bounds the distance of the point to all walls, which on the free side is
+    its clearance.
+    """
+    if cell < 0:
+        return -np.inf
+    across, row = grid.shape[1] * grid.shape[2], grid.shape[2]
+    i, j, m = cell // across, (cell % across) // row, cell % row
+    if not (0 < i < grid.shape[0] - 1 and 0 < j < grid.shape[1] - 1 and 0 < m < row - 1):
+        return -np.inf
+    bound = grid.bound
+    gx = bound[cell + across] - bound[cell - across]
+    gy = bound[cell + row] - bound[cell - row]
+    gz = bound[cell + 1] - bound[cell - 1]
+    size = np.sqrt(gx * gx + gy * gy + gz * gz)
+    if not 0.0 < size < np.inf:
+        return -np.inf
+    f = AFAR * grid.edge / size
+    return at_least(grid, cell_of(grid, x + f * gx, y + f * gy, z + f * gz), x, y, z)
 
 
 @inner

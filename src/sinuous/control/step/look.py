@@ -6,7 +6,7 @@ from sinuous.arrays import Array, BoolArray, IntArray
 from sinuous.compiled import inner, kernel
 from sinuous.control.step.data import Bends, Body, Scratch, Shape
 from sinuous.geometry.bvh import ZoneArrays
-from sinuous.geometry.grid import Grid, at_least, cell_of, exact
+from sinuous.geometry.grid import Grid, at_least, at_least_from_afar, cell_of, exact
 from sinuous.robots import pcc_kernels
 
 
@@ -67,11 +67,13 @@ def _measure(
         x, y, z = points[s, 0], points[s, 1], points[s, 2]
         cell = cell_of(grid, x, y, z)
         bound, enough = at_least(grid, cell, x, y, z), required[s] + extra
-        if 0.0 <= bound < enough and room.size > 0:
+        if 0.0 <= bound < enough:
             # On the free side; so the distance to the walls, which changes no faster than the
             # point moves, is the clearance.
-            dx, dy, dz = x - seen[s, 0], y - seen[s, 1], z - seen[s, 2]
-            bound = max(bound, room[s] - np.sqrt(dx * dx + dy * dy + dz * dz))
+            bound = max(bound, at_least_from_afar(grid, cell, x, y, z))
+            if bound < enough and room.size > 0:
+                dx, dy, dz = x - seen[s, 0], y - seen[s, 1], z - seen[s, 2]
+                bound = max(bound, room[s] - np.sqrt(dx * dx + dy * dy + dz * dz))
         clearance[s] = bound
         if bound < enough:
             d, gx, gy, gz, nearest = exact(zone, grid, cell, x, y, z, stack, keys)

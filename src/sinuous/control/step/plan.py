@@ -29,7 +29,7 @@ PENALTY = 100.0
 ROUNDS_BEYOND = 2
 
 # Shares of a budget after which the plan, and after which the filter has to stop.
-PLAN_SHARE, FILTER_SHARE = 0.6, 0.9
+PLAN_SHARE, FILTER_SHARE = 0.6, 0.85
 
 # A plan may come this much closer than its reserve before it is corrected [m].
 TOLERANCE = 1e-6
@@ -59,7 +59,7 @@ class Solved(NamedTuple):
     Arguments:
         status: how the last QP ended, see `interior`
         qps, iterations: solved, and how many iterations that took
-        rows: there are now
+        rows: there are now; those from `used` on joined after the last QP
         planes: soft ones among them
     """
 
@@ -67,6 +67,7 @@ class Solved(NamedTuple):
     qps: int
     iterations: int
     rows: int
+    used: int
     planes: int
 
 
@@ -190,7 +191,7 @@ def solve(model: Model, work: Work, prepared: Prepared) -> Solved:
     hard, count, size, deadline = prepared.hard, prepared.rows, prepared.size, prepared.deadline
     problem, it, old, new, scratch = work.problem, work.iterate, work.old, work.found, work.scratch
     most = model.rules.rounds if prepared.inside else ROUNDS_BEYOND
-    solved, total, status = 0, 0, UNFINISHED
+    solved, total, used, status = 0, 0, count, UNFINISHED
     problem.strength[:count] = 0.0
     while solved < most:
         status, iterations = interior.solve(
@@ -213,17 +214,17 @@ def solve(model: Model, work: Work, prepared: Prepared) -> Solved:
         if status != SOLVED:
             break
         solved += 1
-        before = count
+        used = count
         _keep(work, count)
         count, changed = violated_cuts(
             model, old, new, work.motion, problem, hard, count, it.y, scratch, TOLERANCE
         )
-        for k in range(before, count):
+        for k in range(used, count):
             problem.meaning.value[k] = size / (model.scale.step * problem.meaning.size[k])
             work.problem.strength[k] = 0.0
         if changed == 0 or (np.isfinite(deadline) and seconds() > deadline):
             break
-    return Solved(status, solved, total, count, count - hard)
+    return Solved(status, solved, total, count, used, count - hard)
 
 
 @kernel
@@ -251,18 +252,20 @@ def _keep(work: Work, count: int) -> None:
 
 
 @kernel
-def lean(work: Work, hard: int, count: int, contacts: Contacts) -> None:
-    """Write which walls the new stages lean on; the strongest are kept if there are too many."""
+def lean(work: Work, hard: int, solved: Solved, contacts: Contacts) -> None:
+    """Write which walls the new stages lean on; the strongest are kept if there are too many.
+
+    Planes that joined after the last QP have no push yet, but are remembered for the next step.
+    """
     meaning, place, strength = work.problem.meaning, work.problem.rows.place, work.problem.strength
     contacts.number[:] = 0
-    for k in range(hard, count):
-        if meaning.what[k] != WALL or strength[k] <= 0.0:
+    for k in range(hard, solved.rows):
+        if meaning.what[k] != WALL or (strength[k] <= 0.0 and k < solved.used):
             continue
         i = place[k, STAGE]
         at = contacts.number[i]
         if at == contacts.point.shape[1]:
-            at = -1
-            weakest = strength[k]
+            at, weakest = -1, strength[k]
             for m in range(contacts.point.shape[1]):
                 push = contacts.push[i, m]
                 size = np.sqrt(push[0] ** 2 + push[1] ** 2 + push[2] ** 2)

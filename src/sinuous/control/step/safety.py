@@ -11,7 +11,7 @@ from sinuous.compiled import kernel
 from sinuous.control.step.clock import seconds
 from sinuous.control.step.data import Limits, Model, Shape, Work
 from sinuous.control.step.look import least_bend_slack, least_slack, look
-from sinuous.geometry.grid import at_least, cell_of, exact
+from sinuous.geometry.grid import at_least, at_least_from_afar, cell_of, exact
 from sinuous.geometry.segment import is_clear
 from sinuous.robots import pcc_kernels, pcc_second
 
@@ -196,8 +196,8 @@ def _point_is_safe(model: Model, work: Work, s: int, need: float, bow: float) ->
             return False
         middle = (first + last) // 2
         _place(model, work, middle)
-        _measure(model, work, s, middle, not free)
-        if way.clearance[middle] < need and not free:
+        _measure(model, work, s, middle, need)
+        if way.clearance[middle] < need:
             return False
         stack[top, 0], stack[top, 1] = first, middle
         stack[top + 1, 0], stack[top + 1, 1] = middle, last
@@ -216,18 +216,17 @@ def _chord_is_clear(
 
 
 @kernel
-def _measure(model: Model, work: Work, s: int, k: int, exactly: bool) -> None:
-    """Clearance of body point s after k pieces, or a lower bound of it."""
-    body, way = model.body, work.way
+def _measure(model: Model, work: Work, s: int, k: int, need: float) -> None:
+    """Clearance of body point s after k pieces: a lower bound if that is enough, else exact."""
+    body, way, scratch = model.body, work.way, work.scratch
     x, y, z = way.points[k, s, 0], way.points[k, s, 1], way.points[k, s, 2]
     cell = cell_of(body.grid, x, y, z)
-    if exactly:
-        scratch = work.scratch
-        way.clearance[k] = exact(body.zone, body.grid, cell, x, y, z, scratch.stack, scratch.keys)[
-            0
-        ]
-    else:
-        way.clearance[k] = at_least(body.grid, cell, x, y, z)
+    bound = at_least(body.grid, cell, x, y, z)
+    if 0.0 <= bound < need:
+        bound = max(bound, at_least_from_afar(body.grid, cell, x, y, z))
+    if bound < need:
+        bound = exact(body.zone, body.grid, cell, x, y, z, scratch.stack, scratch.keys)[0]
+    way.clearance[k] = bound
 
 
 @kernel

@@ -73,7 +73,7 @@ def decide(
         np.zeros((work.old.c.shape[0], CONTACTS), np.int64),
         np.zeros((work.old.c.shape[0], CONTACTS, 3)),
     )
-    plan.lean(work, prepared.hard, solved.rows, leaning)
+    plan.lean(work, prepared.hard, solved, leaning)
     halvings = descend(model, work, leaning, target, extra_H, extra_f, prepared.deadline)
     share, tests = accept(model, work, prepared.last)
     in_time = solved.status != OUT_OF_TIME
