@@ -200,3 +200,11 @@ def test_every_public_name_is_there() -> None:
     assert set(sn.__all__) <= set(dir(sn))
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = sn.nothing  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def test_a_budget_reaches_the_controller() -> None:
+    path = EXAMPLES / "free_space.toml"
+    assert sn.load_scenario(path).mpc.budget is None
+    assert sn.load_scenario(path, set=["mpc.budget_ms=0.3"]).mpc.budget == pytest.approx(3e-4)
+    with pytest.raises(sn.InputError, match="budget"):
+        sn.load_scenario(path, set=["mpc.budget_ms=0"])

@@ -1,5 +1,6 @@
 """What the controller does when something fails: it holds still and says why."""
 
+import pickle
 import threading
 
 import numpy as np
@@ -90,6 +91,16 @@ def test_a_goal_in_the_wall_is_cut_short() -> None:
     end, share = slow.accept(START, bent)
     assert 0.0 < share < 1.0
     assert mpc.slack(end).min() >= 0.0
+
+
+def test_a_controller_and_its_state_can_be_sent_to_another_process() -> None:
+    scene = bent_tube()
+    mpc = scene.mpc()
+    state, _ = mpc.step(mpc.init(START), scene.axis[12])
+    other, there = pickle.loads(pickle.dumps((mpc, state)))
+    here, _ = mpc.step(state, scene.axis[12])
+    again, _ = other.step(there, scene.axis[12])
+    np.testing.assert_array_equal(here.c, again.c)
 
 
 def test_two_threads_may_use_one_controller() -> None:

@@ -8,9 +8,10 @@ printed, (12) leaves x[N] free of cost (notes B3).  All of it is one compiled ca
 GIL, see `sinuous.control.step`.
 """
 
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, fields
 from functools import cached_property
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
@@ -117,6 +118,10 @@ class ShapeConstrainedMPC:
             raise ValueError(f"tip_speed must be positive, not {self.tip_speed}")
         if self.budget is not None and not self.budget > 0.0:
             raise ValueError(f"budget must be a positive time, not {self.budget}")
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What a copy in another process needs: not the compiled step's memory."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @cached_property
     def model(self) -> Model:

@@ -64,6 +64,7 @@ def load_scenario(path: str | Path, *, set: Iterable[str] = ()) -> Scenario:
         horizon=table.mpc.horizon,
         costs=_COSTS[table.mpc.cost](),
         tip_speed=table.mpc.tip_speed,
+        budget=table.mpc.budget,
     )
     return Scenario(
         name=table.name,

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import AllowInfNan, Field
 
-from sinuous.files import Angle, FieldError, Frequency, Length, Speed
+from sinuous.files import Angle, Duration, FieldError, Frequency, Length, Speed
 from sinuous.scenario.path import MAX_STEPS
 
 Point = tuple[Length, Length, Length]
@@ -15,7 +15,7 @@ _NotNegative = Field(ge=0.0)
 _Positive = Field(gt=0.0)
 _Named = Field(min_length=1)
 _MostSteps = 1_000_000  # nobody waits longer for one way-point
-_LongestHorizon = 200  # a dense QP over more stages takes minutes for each step
+_LongestHorizon = 200  # nobody looks ahead further; scratch grows with it
 
 
 class CostChoice(Enum):
@@ -56,6 +56,7 @@ class MpcTable:
     rate: Annotated[Frequency, _Positive] = 30.0
     margin: Annotated[Length, _NotNegative] = 0.003
     tip_speed: Annotated[Speed, _Positive] | None = None
+    budget: Annotated[Duration, _Positive] | None = None  # processor time of a step
     cost: CostChoice = CostChoice.UNBIASED
 
 
