@@ -17,18 +17,14 @@ from sinuous.control.report import Status
 from sinuous.control.step import blocks, interior
 from sinuous.control.step.interior import (
     GAP,
-    INCREMENT,
-    KIND,
-    LAST,
     NOT_FINITE,
     RESIDUAL,
     SOLVED,
-    STAGE,
-    STATE,
     STATIONARY,
     UNFINISHED,
 )
 from sinuous.control.step.linearise import CONVEX, make_convex
+from sinuous.control.step.rows import INCREMENT, KIND, LAST, STAGE, STATE
 from sinuous.control.step.step import FirstProblem
 
 from .scenes import START, bent_tube

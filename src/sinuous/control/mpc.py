@@ -10,6 +10,7 @@ GIL, see `sinuous.control.step`.
 
 from dataclasses import KW_ONLY, dataclass, field, fields
 from functools import cached_property
+from math import isfinite
 from time import perf_counter
 from typing import Any
 
@@ -178,7 +179,7 @@ class ShapeConstrainedMPC:
         """
         began = perf_counter()
         goal = np.array(target, dtype=float)
-        if goal.shape != (3,) or not np.all(np.isfinite(goal)):
+        if goal.shape != (3,) or not all(map(isfinite, goal.tolist())):
             return self._hold(state, "the target is not three finite numbers", began)
         H, f = total_quadratics(self._further_costs, self.robot, state.plan, goal)
         budget = np.inf if self.budget is None else self.budget

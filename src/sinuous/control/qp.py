@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 
 from sinuous.arrays import Array, IntArray
-from sinuous.control.step import interior
+from sinuous.control.step import rows
 from sinuous.control.step.step import FirstProblem
 
 
@@ -44,17 +44,17 @@ class DenseProblem:
         count = first.total
         A = np.zeros((count, N, n))
         for k in range(count):
-            i = first.place[k, interior.STAGE]
+            i = first.place[k, rows.STAGE]
             A[k, i] = first.a[k]
-            if first.place[k, interior.KIND] == interior.INCREMENT and i > 0:
+            if first.place[k, rows.KIND] == rows.INCREMENT and i > 0:
                 A[k, i - 1] = -first.a[k]
         return cls(
             H=H,
             f=first.f.ravel().copy(),
             A=A.reshape(count, N * n),
-            lower=first.bound[:count, interior.LOWER].copy(),
-            upper=first.bound[:count, interior.UPPER].copy(),
-            price=first.bound[:count, interior.PRICE].copy(),
+            lower=first.bound[:count, rows.LOWER].copy(),
+            upper=first.bound[:count, rows.UPPER].copy(),
+            price=first.bound[:count, rows.PRICE].copy(),
             what=first.what[:count].copy(),
             index=first.which[:count].copy(),
         )

@@ -151,6 +151,9 @@ def total_weights(costs: Sequence[WeightedCost | QuadraticCost], robot: Robot) -
     )
 
 
+NO_HESSIANS, NO_GRADIENTS = np.zeros((0, 0, 0)), np.zeros((0, 0))
+
+
 def further_costs(
     costs: Sequence[WeightedCost | QuadraticCost],
 ) -> tuple[QuadraticCost, ...]:
@@ -167,9 +170,9 @@ def total_quadratics(
         predicted: configurations (N, n)
         target: (3,) [m]
     """
-    N, n = predicted.shape
     if not costs:
-        return np.zeros((0, n, n)), np.zeros((0, n))
+        return NO_HESSIANS, NO_GRADIENTS
+    N, n = predicted.shape
     H, f = np.zeros((N, n, n)), np.zeros((N, n))
     for i, c in enumerate(predicted):
         for cost in costs:

@@ -7,7 +7,7 @@ that all its numbers are of order one whatever the robot's size and rate.
 from typing import NamedTuple
 
 from sinuous.arrays import Array, BoolArray, IntArray
-from sinuous.control.step.interior import Iterate, Pairs, Rows
+from sinuous.control.step.rows import Iterate, Pairs, Rows
 from sinuous.geometry.bvh import ZoneArrays
 from sinuous.geometry.grid import Grid
 from sinuous.records import record

@@ -16,7 +16,7 @@ from sinuous.control.step.data import (
     Way,
     Work,
 )
-from sinuous.control.step.interior import Rows, new_iterate, new_pairs
+from sinuous.control.step.rows import Rows, new_iterate, new_pairs
 from sinuous.control.step.safety import PIECES
 from sinuous.geometry.bvh import STACK
 from sinuous.robots import pcc_second

@@ -8,7 +8,7 @@ from sinuous.arrays import Array
 from sinuous.compiled import kernel
 from sinuous.control.step import interior
 from sinuous.control.step.clock import seconds
-from sinuous.control.step.conditions import first_cuts, hard_rows, violated_cuts
+from sinuous.control.step.cuts import first_cuts, violated_cuts
 from sinuous.control.step.data import (
     WALL,
     Contacts,
@@ -16,9 +16,11 @@ from sinuous.control.step.data import (
     Shape,
     Work,
 )
-from sinuous.control.step.interior import OUT_OF_TIME, PRICE, SOLVED, STAGE, UNFINISHED
+from sinuous.control.step.interior import OUT_OF_TIME, SOLVED, UNFINISHED
+from sinuous.control.step.limits import hard_rows
 from sinuous.control.step.linearise import linearise
 from sinuous.control.step.look import least_bend_slack, least_slack, look
+from sinuous.control.step.rows import PRICE, STAGE
 
 # A soft row costs this many times the largest cost gradient per unit of violation. It must
 # exceed the row's multiplier for the penalty to be exact; in closed loops those stay below 3.

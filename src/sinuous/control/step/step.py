@@ -9,10 +9,11 @@ from sinuous.compiled import kernel
 from sinuous.control.step import plan
 from sinuous.control.step.clock import seconds
 from sinuous.control.step.data import CONTACTS, Contacts, Model, Work
-from sinuous.control.step.interior import FIRST, LAST, OUT_OF_TIME
+from sinuous.control.step.interior import OUT_OF_TIME
 from sinuous.control.step.look import least_bend_slack, least_slack, look
 from sinuous.control.step.merit import descend
 from sinuous.control.step.plan import Prepared, Solved
+from sinuous.control.step.rows import FIRST, LAST
 from sinuous.control.step.safety import accept
 
 # Multipliers below this share of the largest are rounding.
