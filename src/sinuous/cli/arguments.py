@@ -1,11 +1,12 @@
 """What the command line takes; the texts here are its manual."""
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 from tyro.conf import Positional, UseAppendAction, arg
 
 Folder = Annotated[str, arg(metavar="DIR")]
+What = Literal["mpc", "scaling", "tails", "rate", "qp", "startup"]
 Assignments = Annotated[UseAppendAction[tuple[tuple[str, ...], ...]], arg(metavar="KEY=VALUE ...")]
 
 
@@ -59,3 +60,32 @@ class Compare:
     """another one"""
     out: Folder
     """folder for the figure"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bench:
+    """Measure what the controller costs, in one thread.
+
+    mpc: one step beside CasADi's solvers and acados, on a stress scene with 30 and 9 disks.
+
+    scaling: one step against disks, guarded points, segments, horizon and vertices of the mesh,
+    and the time to load meshes.
+
+    tails: very many steps in random passages, with and without a budget of 0.3 ms, and why the
+    slowest were slow.
+
+    rate: steps of 1 ms beside steps of 1/30 s on the same path.
+
+    qp: the solver of the controller's quadratic programs beside DAQP and PIQP.
+
+    startup: help, imports and the first control step of a new process.
+    """
+
+    what: Positional[Annotated[What, arg(metavar="{mpc,scaling,tails,rate,qp,startup}")]]
+    """what to measure"""
+    json: Annotated[str | None, arg(metavar="FILE")] = None
+    """file for all numbers, settings, versions and solver logs"""
+    out: Folder = "out/bench"
+    """folder for the figures"""
+    quick: Annotated[bool, arg()] = False
+    """only show that it works: few steps of the smallest setting"""

@@ -10,7 +10,7 @@ from sinuous.geometry.safe_zone import SafeZone
 from sinuous.recording import Header, ZonePart
 from sinuous.scenario import Scenario
 
-PACKAGES = ("sinuous", "numpy", "scipy", "numba", "daqp", "trimesh")
+PACKAGES = ("sinuous", "numpy", "scipy", "numba", "trimesh")
 """Those whose version may change a run."""
 
 
