@@ -20,7 +20,7 @@ from sinuous.freshness import stamp
 P = ParamSpec("P")
 R = TypeVar("R")
 
-COMPILING = "sinuous is compiling its inner loops for this machine, once: about half a minute."
+COMPILING = "sinuous is compiling its inner loops for this machine, once: about a minute."
 HOMELESS = (
     "sinuous compiles its inner loops at every start, because it finds no folder to keep them in. "
     "Set NUMBA_CACHE_DIR to one that can be written."

@@ -43,8 +43,14 @@ def test_mpc_measures_prints_draws_and_writes(
     read = json.loads(file.read_text())
     rows = {row["controller"]: row for row in read["rows"]}
     no_compiler = {"CasADi IPOPT, no compiler"}  # the same as the other where there is none
-    assert rows.keys() - no_compiler == {"sinuous", "sinuous, disks only", "CasADi IPOPT", "CasADi SQP",
-                         "CasADi SQP RTI", "acados RTI"}  # fmt: skip
+    assert rows.keys() - no_compiler == {
+        "sinuous",
+        "sinuous, disks only",
+        "CasADi IPOPT",
+        "CasADi SQP",
+        "CasADi SQP RTI",
+        "acados RTI",
+    }
     assert "pip install" in rows.pop("acados RTI")["status"]
     assert all(row.keys() >= ROW_KEYS for row in rows.values())
     assert {ratio["peer"] for ratio in read["ratios"]} == rows.keys() - {

@@ -8,6 +8,8 @@ import pytest
 
 from sinuous.bench import scene
 from sinuous.bench.variants import Variant, robot, scene_of, tube
+from sinuous.control.mpc import Costs, ShapeConstrainedMPC
+from sinuous.control.report import Status
 from sinuous.geometry.safe_zone import SafeZone
 
 EXACT = 1e-12  # rounding of lengths around 0.1 m and of factors around 1
@@ -71,3 +73,16 @@ def test_the_tube_has_as_many_vertices_as_asked(vertices: int) -> None:
     clearance = zone.clearance(scene.axis(along)[0])
     flat = scene.RADIUS * np.cos(np.pi / scene.SECTIONS)
     assert np.all((clearance > 0.99 * flat) & (clearance <= scene.RADIUS))
+
+
+def test_two_segments_on_the_whole_stress_scene_make_no_solve_fail() -> None:
+    # A QP on its way made the undamped interior-point method go round in a circle.
+    variant = Variant(segments=2)
+    two = scene_of(variant, scene.tube(), 320)
+    mpc = ShapeConstrainedMPC(
+        two.robot, two.zone, margin=two.margin, dt=two.dt, horizon=2, costs=Costs.printed()
+    )
+    state = mpc.init(two.start)
+    for target in two.targets:
+        state, command = mpc.step(state, target)
+        assert command.report.status is not Status.HOLDING

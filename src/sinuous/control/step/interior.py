@@ -39,8 +39,9 @@ RESIDUAL = 1e-9  # of the rows [actuator steps]
 STATIONARY = 1e-7  # of the gradient, relative to its size at the start and the multipliers
 ROUNDED = 1e-5  # the same where it falls no more
 GAP = 1e-8  # mean product of slack and multiplier, in the same units
-TO_BOUNDARY, CLOSEST = 0.995, 0.9999  # share of the way to the boundary that is taken
+TO_BOUNDARY, CLOSEST = 0.99, 0.999  # share of the way to the boundary that is taken
 ENOUGH = 0.3  # of that mean is aimed at; less would only spoil the numbers
+PATIENCE, CALM = 20, 0.2  # after so many, products fall to this share at most and uncorrected
 STUCK, CENTRE = 0.5, 0.9  # a shorter share is none: even the products out first, to this much
 
 
@@ -93,8 +94,10 @@ def solve(
         share = newton.share(count, now, move)
         after = newton.products_after(count, now, move, share) / sides
         # A predictor that gets nowhere says little about the products: correct it by as much less.
-        aim = max(after * (after / mu) ** 2, ENOUGH * GAP * scale)
-        newton.aim(count, now, move, xi, aim, share)
+        aim, correction = max(after * (after / mu) ** 2, ENOUGH * GAP * scale), share
+        if iteration >= PATIENCE:
+            aim, correction = max(aim, CALM * mu), 0.0
+        newton.aim(count, now, move, xi, aim, correction)
         newton.direction(a, place, bound, count, now, move, xi, row, gradient, way, D, C, dy)
         share = newton.share(count, now, move)
         if share < STUCK:
