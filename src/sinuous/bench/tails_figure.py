@@ -1,42 +1,53 @@
-"""How often a step takes longer than so long, with and without a budget."""
+"""How often a step takes longer than so long, and where the time of the slowest goes."""
 
 from collections.abc import Mapping
 from pathlib import Path
 from typing import cast
 
-import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from sinuous.bench.result import Result
+from sinuous.view.curves import write_plainly
+from sinuous.view.style import BLUE, GREEN, VERMILION, save
 
 QUANTILES = {"median": 0.5, "p99": 0.01, "p99.9": 0.001, "p99.99": 0.0001}
-COLOURS = ("#0072B2", "#009E73", "#D55E00")
+COLORS = (BLUE, GREEN, VERMILION)
 
 
-def draw(result: Result, folder: Path) -> list[Path]:
+def draw(result: Result, out: Path) -> list[Path]:
     """Write tails.png."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11.0, 4.2), layout="constrained")
-    quantiles = cast(Mapping[str, Mapping[str, float]], result.about["quantiles"])
-    for (name, values), colour in zip(quantiles.items(), COLOURS, strict=False):
+
+    def paint(figure: Figure) -> None:
+        left, right = figure.subplots(1, 2)
+        _tails(left, cast(Mapping[str, Mapping[str, float]], result.about["quantiles"]))
+        _phases(right, result)
+
+    return [save(out / "tails.png", (11.6, 4.6), paint)]
+
+
+def _tails(axes: Axes, quantiles: Mapping[str, Mapping[str, float]]) -> None:
+    for (name, values), color in zip(quantiles.items(), COLORS, strict=False):
         times = [values[key] for key in QUANTILES]
-        left.plot(times, list(QUANTILES.values()), "o-", color=colour, label=name)
-        left.axvline(values["max"], color=colour, linestyle=":", linewidth=1.0)
-    left.set(xscale="log", yscale="log", xlabel="processor time of a step [ms]")
-    left.set_ylabel("share of steps that take longer")
-    left.set_title("the tail; dotted: the slowest step", fontsize=10)
-    left.legend(frameon=False, fontsize=9)
-    left.grid(alpha=0.3, which="both")
+        axes.plot(times, list(QUANTILES.values()), "o-", color=color, label=name)
+        axes.axvline(values["max"], color=color, linestyle=":", linewidth=1.0)
+    axes.set(xscale="log", yscale="log", xlabel="processor time of a step [ms]")
+    axes.set_ylabel("share of steps that take longer")
+    axes.set_title("The tail; dotted: the slowest step")
+    write_plainly(axes.xaxis)
+    axes.legend()
+
+
+def _phases(axes: Axes, result: Result) -> None:
     rows = [row for row in result.table("worst").rows if row["horizon"] == 2]
     bottom = [0.0] * len(rows)
-    for phase, colour in zip(("prepare", "solve", "decide"), COLOURS, strict=True):
+    for phase, color in zip(("prepare", "solve", "decide"), COLORS, strict=True):
         heights = [cast(float, row[f"{phase}_ms"]) for row in rows]
-        right.bar(range(len(rows)), heights, bottom=bottom, color=colour, label=phase)
+        axes.bar(range(len(rows)), heights, bottom=bottom, color=color, label=phase)
         bottom = [a + b for a, b in zip(bottom, heights, strict=True)]
     for k, row in enumerate(rows):
-        right.annotate(str(row["qps"]), (k, bottom[k]), ha="center", va="bottom", fontsize=8)
-    right.set(xticks=[], xlabel="slowest steps at N = 2, QPs above the bars", ylabel="[ms]")
-    right.set_title("where their time goes when they are repeated", fontsize=10)
-    right.legend(frameon=False, fontsize=9)
-    path = folder / "tails.png"
-    figure.savefig(path, dpi=130)
-    plt.close(figure)
-    return [path]
+        axes.annotate(str(row["qps"]), (k, bottom[k]), ha="center", va="bottom", fontsize=8)
+    axes.set(xticks=[], xlabel="slowest steps at N = 2, QPs above the bars")
+    axes.set_ylabel("processor time when repeated [ms]")
+    axes.set_title("Where their time goes")
+    axes.legend()
