@@ -32,7 +32,7 @@ def test_without_time_the_robot_stands_still_and_says_so() -> None:
     mpc = limited(scene, 1e-9)
     state = mpc.init(START)
     after, command = mpc.step(state, scene.axis[20])
-    assert not command.report.effort.in_time
+    assert not command.report.workload.in_time
     assert command.report.status is not Status.HOLDING  # nothing has failed
     assert command.report.step_fraction == 0.0
     assert np.all(command.rates == 0.0)
@@ -47,7 +47,7 @@ def test_an_ample_budget_changes_nothing() -> None:
         for _ in range(20):
             a, _ = free.step(a, target)
             b, command = ample.step(b, target)
-            assert command.report.effort.in_time
+            assert command.report.workload.in_time
             np.testing.assert_array_equal(a.c, b.c)
 
 

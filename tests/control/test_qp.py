@@ -467,7 +467,7 @@ def test_the_qp_of_a_step_is_the_one_that_can_be_looked_at() -> None:
         state, command = mpc.step(state, target)
         report = command.report
         assert report.status is not Status.HOLDING
-        if report.effort.qps > 1 or report.effort.halvings or report.step_fraction < 1.0:
+        if report.workload.qps > 1 or report.workload.halvings or report.step_fraction < 1.0:
             continue
         for y in (by_piqp(problem), by_daqp(problem)):
             c = before.plan[0] + step * inverse @ y[: len(state.c)]

@@ -122,7 +122,7 @@ def _drive(scene: Scene, index: int, horizon: int, budget: float | None, tally: 
             tally.room = min(tally.room, room)
             tally.violations += room < -ROUNDING
             tally.failures += report.status is Status.HOLDING
-            tally.out_of_time += not report.effort.in_time
+            tally.out_of_time += not report.workload.in_time
             tally.shortened += report.step_fraction < 1.0
             slow = Slow(cpu=cpu, scene=index, step=step, mpc=mpc, state=before, target=target)
             if len(tally.slowest) < WORST:
@@ -158,7 +158,7 @@ def _quantiles(seconds: Array) -> dict[str, float]:
 def _explain(horizon: int, slow: Slow) -> Row:
     """Repeat a step many times, each of its phases timed apart."""
     _, command = slow.mpc.step(slow.state, slow.target)
-    effort = command.report.effort
+    workload = command.report.workload
     phases = np.median([_phases(slow) for _ in range(REPLAYS)], axis=0) * MS_PER_S
     return {
         "horizon": horizon,
@@ -169,11 +169,11 @@ def _explain(horizon: int, slow: Slow) -> Row:
         "prepare_ms": float(phases[0]),
         "solve_ms": float(phases[1]),
         "decide_ms": float(phases[2]),
-        "qps": effort.qps,
-        "iterations": effort.iterations,
-        "planes": effort.planes,
-        "filter_tests": effort.tests,
-        "halvings": effort.halvings,
+        "qps": workload.qps,
+        "iterations": workload.iterations,
+        "planes": workload.planes,
+        "filter_tests": workload.tests,
+        "halvings": workload.halvings,
         "step_fraction": command.report.step_fraction,
     }
 

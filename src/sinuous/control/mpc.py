@@ -20,7 +20,7 @@ from sinuous.arrays import Array, ArrayLike
 from sinuous.control.model import Settings, make_model
 from sinuous.control.qp import DenseProblem
 from sinuous.control.reading import Leaning
-from sinuous.control.report import Command, Effort, Report, Status
+from sinuous.control.report import Command, Report, Status, Workload
 from sinuous.control.step import interior, plan
 from sinuous.control.step.data import CONTACTS, Contacts, Model
 from sinuous.control.step.memory import Memory
@@ -228,7 +228,7 @@ class ShapeConstrainedMPC:
         report = Report(
             status=self._status(outcome),
             solve_time=perf_counter() - began,
-            effort=Effort(
+            workload=Workload(
                 qps=solved.qps,
                 iterations=solved.iterations,
                 planes=solved.planes,

@@ -23,7 +23,7 @@ class Status(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Effort:
+class Workload:
     """How much a step had to do.
 
     Arguments:
@@ -53,7 +53,7 @@ class Report:
         status: how the step ended
         reason: why, if the robot holds still; empty otherwise
         solve_time: wall-clock time of the whole step [s]
-        effort: how much it had to do
+        workload: how much it had to do
         step_fraction: share of the planned first step that the safety filter accepted
         points: nominal body points after the step (S, 3) [m]
     """
@@ -61,7 +61,7 @@ class Report:
     status: Status
     reason: str = ""
     solve_time: float
-    effort: Effort = field(default_factory=Effort)
+    workload: Workload = field(default_factory=Workload)
     step_fraction: float
     points: Array
     robot: Robot = field(repr=False)
@@ -71,12 +71,12 @@ class Report:
     @property
     def iterations(self) -> int:
         """QPs solved."""
-        return self.effort.qps
+        return self.workload.qps
 
     @property
     def planes(self) -> int:
         """Wall planes in the last QP."""
-        return self.effort.planes
+        return self.workload.planes
 
     @cached_property
     def clearance(self) -> float:
