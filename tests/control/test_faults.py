@@ -37,7 +37,7 @@ def test_a_failed_solve_holds_still_and_the_next_step_goes_on(
     mpc = scene.mpc()
     state, _ = mpc.step(mpc.init(START), scene.axis[12])
     with monkeypatch.context() as broken:
-        failed = Solved(interior.UNFINISHED, 0, 40, 60, 60, 0)
+        failed = Solved(interior.UNFINISHED, 0, 40, 60, 60, 0, True)
         broken.setattr(plan, "solve", lambda *_: failed)
         held, command = mpc.step(state, scene.axis[12])
     assert command.report.status is Status.HOLDING

@@ -82,6 +82,21 @@ def _measure(
 
 
 @kernel
+def copy(source: Shape, shape: Shape, b: int) -> None:
+    """Take over row b of another shape, its configuration and what is known about it."""
+    for j in range(shape.c.shape[1]):
+        shape.c[b, j] = source.c[b, j]
+    points, clearance, exactly = shape.points, shape.clearance, shape.exact
+    slot, gradient = shape.slot, shape.gradient
+    for s in range(clearance.shape[1]):
+        clearance[b, s], exactly[b, s] = source.clearance[b, s], source.exact[b, s]
+        slot[b, s] = source.slot[b, s]
+        for d in range(3):
+            points[b, s, d] = source.points[b, s, d]
+            gradient[b, s, d] = source.gradient[b, s, d]
+
+
+@kernel
 def least_slack(body: Body, shape: Shape, b: int) -> float:
     """Least clearance beyond what is required [m], or a lower bound of it."""
     least = np.inf

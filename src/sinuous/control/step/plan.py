@@ -19,7 +19,7 @@ from sinuous.control.step.data import (
 from sinuous.control.step.interior import OUT_OF_TIME, SOLVED, UNFINISHED
 from sinuous.control.step.limits import hard_rows
 from sinuous.control.step.linearise import linearise
-from sinuous.control.step.look import least_bend_slack, least_slack, look
+from sinuous.control.step.look import copy, least_bend_slack, least_slack, look
 from sinuous.control.step.rows import PRICE, STAGE
 
 # A soft row costs this many times the largest cost gradient per unit of violation. It must
@@ -31,7 +31,7 @@ PENALTY = 100.0
 ROUNDS_BEYOND = 2
 
 # Shares of a budget after which the plan, and after which the filter has to stop.
-PLAN_SHARE, FILTER_SHARE = 0.6, 0.85
+PLAN_SHARE, FILTER_SHARE = 0.5, 0.75
 
 # A plan may come this much closer than its reserve before it is corrected [m].
 TOLERANCE = 1e-6
@@ -44,6 +44,7 @@ class Prepared(NamedTuple):
         hard, rows: number of hard rows, and of all
         size: cost that counts as one
         inside: whether the start keeps the margin and the bend limits
+        built: whether there was time for all of it
         deadline, last: when the plan, and when the filter has to stop, on `clock.seconds`
     """
 
@@ -51,6 +52,7 @@ class Prepared(NamedTuple):
     rows: int
     size: float
     inside: bool
+    built: bool
     deadline: float
     last: float
 
@@ -63,6 +65,7 @@ class Solved(NamedTuple):
         qps, iterations: solved, and how many iterations that took
         rows: there are now; those from `used` on joined after the last QP
         planes: soft ones among them
+        whole: whether there was time to look at all new stages, and not only at the first
     """
 
     status: int
@@ -71,6 +74,7 @@ class Solved(NamedTuple):
     rows: int
     used: int
     planes: int
+    whole: bool
 
 
 @kernel
@@ -108,25 +112,36 @@ def prepare(
         least_slack(model.body, start, 0) >= 0.0
         and least_bend_slack(model.bends, start.c[0]) >= 0.0
     )
-    hard, count, size = _build(model, work, contacts, target, extra_H, extra_f)
     deadline, last = began + PLAN_SHARE * budget, began + FILTER_SHARE * budget
-    return Prepared(hard, count, size, inside, deadline, last)
+    if not _stages(model, work, contacts, target, deadline):
+        return Prepared(0, 0, 1.0, inside, False, deadline, last)
+    hard, count, size = _build(model, work, contacts, extra_H, extra_f)
+    return Prepared(hard, count, size, inside, True, deadline, last)
+
+
+@kernel
+def _stages(model: Model, work: Work, contacts: Contacts, target: Array, deadline: float) -> bool:
+    """Look at the predicted stages and linearise them; false if there was no time for all."""
+    old, extra = work.old, model.rules.reserve + model.rules.near
+    for i in range(old.c.shape[0]):
+        if i > 0 and np.isfinite(deadline) and seconds() > deadline:
+            return False
+        # Each stage is near the one before it.
+        seen = work.start.points[0] if i == 0 else old.points[i - 1]
+        room = work.start.clearance[0] if i == 0 else old.clearance[i - 1]
+        look(model.body, old, i, extra, seen, room, work.scratch)
+        linearise(model, old, work.motion, contacts, work.problem, i, target, work.scratch)
+    return True
 
 
 @kernel
 def _build(
-    model: Model, work: Work, contacts: Contacts, target: Array, extra_H: Array, extra_f: Array
+    model: Model, work: Work, contacts: Contacts, extra_H: Array, extra_f: Array
 ) -> tuple[int, int, float]:
-    """Costs and first rows; returns the hard rows, all rows and the cost that counts as one."""
+    """Add up costs and rows; returns the hard rows, all rows and the cost that counts as one."""
     old, problem, scratch = work.old, work.problem, work.scratch
     H, f, rows, meaning = problem.H, problem.f, problem.rows, problem.meaning
     N, n, scale = old.c.shape[0], old.c.shape[1], model.scale
-    for i in range(N):
-        # Each stage is near the one before it.
-        seen = work.start.points[0] if i == 0 else old.points[i - 1]
-        room = work.start.clearance[0] if i == 0 else old.clearance[i - 1]
-        look(model.body, old, i, model.rules.reserve + model.rules.near, seen, room, scratch)
-        linearise(model, old, work.motion, contacts, problem, i, target, scratch)
     if extra_H.shape[0] == N:
         _add_extra(model, work, extra_H, extra_f)
     _add_effort(model, work)
@@ -188,36 +203,41 @@ def _add_effort(model: Model, work: Work) -> None:
 def solve(model: Model, work: Work, prepared: Prepared) -> Solved:
     """Solve, look at the exact mesh, add what is violated, and solve again.
 
-    The new stages are in `work.found` if any QP was solved.
+    The new stages are in `work.found`; without the time for a QP they are the predicted ones.
     """
     hard, count, size, deadline = prepared.hard, prepared.rows, prepared.size, prepared.deadline
     problem, it, old, new, scratch = work.problem, work.iterate, work.old, work.found, work.scratch
     most = model.rules.rounds if prepared.inside else ROUNDS_BEYOND
-    solved, total, used, status = 0, 0, count, UNFINISHED
+    solved, total, used, status, whole = 0, 0, count, UNFINISHED, True
+    reserve = model.rules.reserve
     problem.strength[:count] = 0.0
+    if not prepared.built:
+        new.c[:] = old.c
+        copy(old, new, 0)
+        return Solved(OUT_OF_TIME, 0, 0, 0, 0, 0, False)
     while solved < most:
         status, iterations = interior.solve(
             problem.H, problem.E, problem.f, problem.rows, count, work.pairs, it, deadline
         )
         total += iterations
         # Out of time in the first QP: what it has is still a guess, and the filter judges it.
-        if status == SOLVED or (status == OUT_OF_TIME and solved == 0):
+        if status == OUT_OF_TIME and total == 0:
+            for i in range(old.c.shape[0]):
+                copy(old, new, i)
+        elif status == SOLVED or (status == OUT_OF_TIME and solved == 0):
             _place(model, old, new, it.y)
             for i in range(old.c.shape[0]):
-                look(
-                    model.body,
-                    new,
-                    i,
-                    model.rules.reserve,
-                    old.points[i],
-                    old.clearance[i],
-                    scratch,
-                )
+                if i > 0 and np.isfinite(deadline) and seconds() > deadline:
+                    whole = False  # the first stage is all that the filter needs
+                    break
+                look(model.body, new, i, reserve, old.points[i], old.clearance[i], scratch)
         if status != SOLVED:
             break
         solved += 1
         used = count
         _keep(work, count)
+        if not whole:
+            break
         count, changed = violated_cuts(
             model, old, new, work.motion, problem, hard, count, it.y, scratch, TOLERANCE
         )
@@ -226,7 +246,7 @@ def solve(model: Model, work: Work, prepared: Prepared) -> Solved:
             work.problem.strength[k] = 0.0
         if changed == 0 or (np.isfinite(deadline) and seconds() > deadline):
             break
-    return Solved(status, solved, total, count, used, count - hard)
+    return Solved(status, solved, total, count, used, count - hard, whole)
 
 
 @kernel

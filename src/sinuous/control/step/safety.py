@@ -9,8 +9,8 @@ import numpy as np
 from sinuous.arrays import Array
 from sinuous.compiled import kernel
 from sinuous.control.step.clock import seconds
-from sinuous.control.step.data import Limits, Model, Shape, Work
-from sinuous.control.step.look import least_bend_slack, least_slack, look
+from sinuous.control.step.data import Limits, Model, Work
+from sinuous.control.step.look import copy, least_bend_slack, least_slack, look
 from sinuous.geometry.grid import at_least, at_least_from_afar, cell_of, exact
 from sinuous.geometry.segment import is_clear
 from sinuous.robots import pcc_kernels, pcc_second
@@ -46,7 +46,7 @@ def accept(model: Model, work: Work, deadline: float) -> tuple[float, int]:
         allowed = _lengths_share(model.limits, start.c[0], end.c[0])
         if allowed == 1.0:
             if attempt == 0:
-                _copy_first(goal, end)
+                copy(goal, end, 0)
             else:
                 _look(model, work)
             allowed = _tip_share(model.limits, start.points[0], end.points[0])
@@ -70,16 +70,6 @@ def _look(model: Model, work: Work) -> None:
     """Look at the end, near the start."""
     start, end = work.start, work.end
     look(model.body, end, 0, 0.0, start.points[0], start.clearance[0], work.scratch)
-
-
-@kernel
-def _copy_first(goal: Shape, end: Shape) -> None:
-    """The end is the first of the new stages, which has been looked at."""
-    points, clearance, exactly = end.points, end.clearance, end.exact
-    for s in range(clearance.shape[1]):
-        clearance[0, s], exactly[0, s] = goal.clearance[0, s], goal.exact[0, s]
-        for d in range(3):
-            points[0, s, d] = goal.points[0, s, d]
 
 
 @kernel

@@ -74,10 +74,13 @@ def decide(
         np.zeros((work.old.c.shape[0], CONTACTS), np.int64),
         np.zeros((work.old.c.shape[0], CONTACTS, 3)),
     )
-    plan.lean(work, prepared.hard, solved, leaning)
-    halvings = descend(model, work, leaning, target, extra_H, extra_f, prepared.deadline)
+    halvings = 0
+    if prepared.built:
+        plan.lean(work, prepared.hard, solved, leaning)
+    if solved.whole:
+        halvings = descend(model, work, leaning, target, extra_H, extra_f, prepared.deadline)
     share, tests = accept(model, work, prepared.last)
-    in_time = solved.status != OUT_OF_TIME
+    in_time = solved.whole and solved.status != OUT_OF_TIME
     if np.isfinite(prepared.last):
         in_time = in_time and seconds() <= prepared.last
     return _outcome(model, work, leaning, target, share, solved.rows, tests, halvings, in_time)
