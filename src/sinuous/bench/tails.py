@@ -28,6 +28,7 @@ WORST, REPLAYS = 20, 50
 BUDGET = 0.3e-3  # [s]
 LATE = 0.5e-3  # no step with that budget should take longer [s]
 SETTINGS = ((2, None), (2, BUDGET), (5, None))
+AGAIN = 15  # repetitions of a step that took too long in spite of its budget
 NOISE = 20_000  # repetitions of one and the same step
 ROUNDING = 1e-12  # a margin broken by less is rounding [m]
 
@@ -55,6 +56,8 @@ class Tally:
     failures: int = 0
     out_of_time: int = 0
     shortened: int = 0
+    late: int = 0
+    late_again: int = 0
     slowest: list[Slow] = field(default_factory=list[Slow])
 
 
@@ -124,11 +127,25 @@ def _drive(scene: Scene, index: int, horizon: int, budget: float | None, tally: 
             tally.failures += report.status is Status.HOLDING
             tally.out_of_time += not report.workload.in_time
             tally.shortened += report.step_fraction < 1.0
+            if cpu > LATE:
+                tally.late += 1
+                if budget is not None:
+                    tally.late_again += _again(mpc, before, target) > LATE
             slow = Slow(cpu=cpu, scene=index, step=step, mpc=mpc, state=before, target=target)
             if len(tally.slowest) < WORST:
                 heapq.heappush(tally.slowest, slow)
             elif slow > tally.slowest[0]:
                 heapq.heapreplace(tally.slowest, slow)
+
+
+def _again(mpc: ShapeConstrainedMPC, state: MPCState, target: Array) -> float:
+    """Median time of the same step, repeated [s]: without what the machine did beside it."""
+    times = np.empty(AGAIN)
+    for k in range(AGAIN):
+        began = process_time_ns()
+        mpc.step(state, target)
+        times[k] = (process_time_ns() - began) / NS_PER_S
+    return float(np.median(times))
 
 
 def _row(horizon: int, budget: float | None, tally: Tally) -> Row:
@@ -138,7 +155,8 @@ def _row(horizon: int, budget: float | None, tally: Tally) -> Row:
         "budget_ms": None if budget is None else budget * MS_PER_S,
         "steps": len(cpu),
         **{f"{name}_ms": value for name, value in _quantiles(cpu).items()},
-        "over_0.5_ms": int(np.sum(cpu > LATE)),
+        "over_0.5_ms": tally.late,
+        "over_0.5_ms_again": None if budget is None else tally.late_again,
         "violations": tally.violations,
         "failures": tally.failures,
         "out_of_time": tally.out_of_time,
@@ -227,6 +245,7 @@ COLUMNS = (
     Column(key="p99.9_ms", title="p99.9", form=".3f"),
     Column(key="max_ms", title="max", form=".3f"),
     Column(key="over_0.5_ms", title="> 0.5 ms"),
+    Column(key="over_0.5_ms_again", title="again"),
     Column(key="violations", title="broken"),
     Column(key="failures", title="failed"),
     Column(key="out_of_time", title="late"),
@@ -250,7 +269,8 @@ NOTES = (
     "Processor time in ms, one thread; tip error in mm. One target in three is out of reach.",
     '"broken": steps in which the body surface, every 0.25 mm at five shapes, is closer to a wall '
     'than the margin. "late": the budget ended before the work did.',
-    '"again": the same step repeated, median; what is above it was the machine.',
+    '"again": the same step repeated, median; what is above it was the machine. With a budget: how '
+    "many of the steps over 0.5 ms are so again.",
     "The worst case is bounded by 6 QPs of 40 iterations each, 64 planes a stage, and 16 shares "
     "of the step in the filter; a budget bounds it by time.",
 )
