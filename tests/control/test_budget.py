@@ -33,7 +33,7 @@ def test_without_time_the_robot_stands_still_and_says_so() -> None:
     state = mpc.init(START)
     after, command = mpc.step(state, scene.axis[20])
     assert not command.report.workload.in_time
-    assert command.report.status is not Status.HOLDING  # nothing has failed
+    assert command.report.status is Status.TRACKING  # nothing has failed, nothing is in the way
     assert command.report.step_fraction == 0.0
     assert np.all(command.rates == 0.0)
     np.testing.assert_array_equal(after.c, state.c)

@@ -74,6 +74,11 @@ def test_numbers_that_are_not_finite_are_refused(value: float) -> None:
     assert np.array_equal(after.c, state.c)
 
 
+def test_a_start_of_another_robot_is_refused() -> None:
+    with pytest.raises(ValueError, match="9 coordinates"):
+        bent_tube().mpc().init(START[:6])
+
+
 def test_a_state_that_is_not_finite_holds_still() -> None:
     scene = bent_tube()
     mpc = scene.mpc()

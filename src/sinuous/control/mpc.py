@@ -158,8 +158,14 @@ class ShapeConstrainedMPC:
         return np.where(self.robot.movable, room, np.inf)
 
     def init(self, c: ArrayLike) -> MPCState:
-        """The state to start from, at rest at configuration c (n,)."""
+        """The state to start from, at rest at configuration c (n,).
+
+        Raises:
+            ValueError: if c has not the robot's coordinates
+        """
         start, N = np.array(c, dtype=float), self.horizon
+        if start.shape != self.robot.home.shape:
+            raise ValueError(f"c must have {len(self.robot.home)} coordinates, not {start.shape}")
         _ = self.memory  # so that the first step takes no longer than others
         return MPCState(
             c=start,
@@ -268,6 +274,7 @@ class ShapeConstrainedMPC:
             return Status.RECOVERING
         if outcome.tip_error < ARRIVED:
             return Status.AT_TARGET
-        if outcome.tip_moved < STILL * self.dt:
+        # Whoever had no time to find a way cannot say that there is none.
+        if outcome.in_time and outcome.tip_moved < STILL * self.dt:
             return Status.BLOCKED
         return Status.TRACKING
