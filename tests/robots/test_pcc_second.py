@@ -121,18 +121,6 @@ def test_second_coefficients_are_derivatives(w: float) -> None:
 
 
 @given(robot=robots, seed=seeds)
-@settings(max_examples=30)
-def test_one_point_is_that_of_all(robot: PccRobot, seed: int) -> None:
-    M = robot.chain.theta_column.size
-    R, p, out = np.empty((M + 1, 3, 3)), np.empty((M + 1, 3)), np.empty(3)
-    for c in configurations(robot, np.random.default_rng(seed), 3):
-        pcc_kernels.frames(robot.chain, robot.T_w_b, c, R, p)
-        for s, point in enumerate(robot.points(c)):
-            pcc_kernels.point_at(robot.chain, s, c, R, p, out)
-            np.testing.assert_allclose(out, point, rtol=0, atol=ROUNDING)
-
-
-@given(robot=robots, seed=seeds)
 @settings(max_examples=100)
 def test_points_stray_from_chords_by_no_more_than_the_bound(robot: PccRobot, seed: int) -> None:
     rng = np.random.default_rng(seed)

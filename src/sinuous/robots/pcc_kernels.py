@@ -127,18 +127,6 @@ def _section_points(
 
 
 @inner
-def point_at(chain: Chain, s: int, c: Array, R: Array, p: Array, out: Array) -> None:
-    """Point s (3,) in the world frame, given the frames."""
-    m, u = chain.section[s], chain.fraction[s]
-    theta_x, theta_y, gamma = bend(chain, m, c)
-    sine, k, _, _ = coefficients(u * u * (theta_x * theta_x + theta_y * theta_y))
-    sine, k = gamma * u * sine, gamma * u * u * k
-    for i in range(3):
-        theta = theta_x * R[m, i, 0] + theta_y * R[m, i, 1]
-        out[i] = p[m, i] + k * theta + sine * axis(chain, m, i, R)
-
-
-@inner
 def chain_derivative(
     chain: Chain, T_w_b: Array, c: Array, R: Array, p: Array, ends: Array, spins: Array
 ) -> None:
