@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from sinuous.geometry import shapes
     from sinuous.geometry.mesh import check_mesh
     from sinuous.geometry.safe_zone import SafeZone
+    from sinuous.measurement import Measurement
     from sinuous.plants.kinematic import Disturbance, KinematicPlant
-    from sinuous.plants.plant import Measurement
     from sinuous.reach import Reach, reaches
     from sinuous.recording.reader import read as read_recording
     from sinuous.recording.run import Recording, Sample
@@ -35,7 +35,7 @@ _HOME = {
     "KinematicPlant": "sinuous.plants.kinematic",
     "Leg": "sinuous.scenario.path",
     "MPCState": "sinuous.control.mpc",
-    "Measurement": "sinuous.plants.plant",
+    "Measurement": "sinuous.measurement",
     "PccRobot": "sinuous.robots.pcc",
     "Reach": "sinuous.reach",
     "Recording": "sinuous.recording.run",

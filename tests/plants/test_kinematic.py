@@ -35,6 +35,11 @@ class Transparent:
         points[1:, 0] = c
         return points
 
+    def tip_pose(self, c: ArrayLike) -> Array:
+        T_w_t = np.eye(4)
+        T_w_t[:3, 3] = self.points(c)[-1]
+        return T_w_t
+
 
 class Overheard:
     """A robot that remembers which lengths it was asked to explain."""

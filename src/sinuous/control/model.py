@@ -22,6 +22,7 @@ class Settings:
     Arguments:
         margin: [m]
         dt: [s]
+        rate_share: of the actuators' speed limits
         tip_speed: [m/s], infinite for no limit
         trust: largest change of an actuator from its predicted length [m]
         reserve, near, rounds, late: see `step.data.Rules`
@@ -29,6 +30,7 @@ class Settings:
 
     margin: float
     dt: float
+    rate_share: float
     tip_speed: float
     trust: float
     reserve: float
@@ -75,7 +77,7 @@ def _limits(robot: Robot, inverse: Array, settings: Settings) -> Limits:
     offset = robot.lengths(robot.home) - lengths @ robot.home
     scaled = A @ inverse
     low, high = np.concatenate([robot.length_limits, robot.coordinate_limits[own]]).T
-    slowest, fastest = robot.rate_limits.T * settings.dt
+    slowest, fastest = robot.rate_limits.T * settings.rate_share * settings.dt
     return assemble.limits(
         _plain(A),
         np.concatenate([offset, np.zeros(len(own))]),

@@ -28,6 +28,7 @@ from sinuous.control.step.plan import Solved
 from sinuous.control.step.step import Outcome, decide, filtered, first_problem
 from sinuous.control.terms import Costs, QuadraticCost, further_costs, total_quadratics
 from sinuous.geometry.safe_zone import SafeZone
+from sinuous.measurement import Measurement
 from sinuous.robots.robot import Robot
 
 __all__ = ["Costs", "MPCState", "ShapeConstrainedMPC"]
@@ -93,9 +94,12 @@ class ShapeConstrainedMPC:
         budget: processor time that a step may take [s], None for no limit. When it is spent the
             step goes as far as what is there is safe, or holds still; such steps depend on the
             machine and do not repeat bit for bit
+        rate_share: of the actuators' speed limits that the plan may use (notes B13); the rest
+            is left to a local controller
 
     Raises:
-        ValueError: if margin, dt, horizon, tip_speed or budget make no sense
+        ValueError: if margin, dt, horizon, tip_speed, budget or rate_share make
+            no sense
     """
 
     robot: Robot
@@ -107,6 +111,7 @@ class ShapeConstrainedMPC:
     costs: Costs = field(default_factory=Costs)
     tip_speed: float | None = None
     budget: float | None = None
+    rate_share: float = 1.0
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.margin) and self.margin >= 0.0):
@@ -119,6 +124,8 @@ class ShapeConstrainedMPC:
             raise ValueError(f"tip_speed must be positive, not {self.tip_speed}")
         if self.budget is not None and not self.budget > 0.0:
             raise ValueError(f"budget must be a positive time, not {self.budget}")
+        if not 0.0 < self.rate_share <= 1.0:
+            raise ValueError(f"rate_share must be above 0 and at most 1, not {self.rate_share}")
 
     def __getstate__(self) -> dict[str, Any]:
         """What a copy in another process needs: not the compiled step's memory."""
@@ -127,10 +134,11 @@ class ShapeConstrainedMPC:
     @cached_property
     def model(self) -> Model:
         """All that stays the same from step to step, as arrays."""
-        fastest = float(np.max(self.robot.rate_limits)) * self.dt
+        fastest = float(np.max(self.robot.rate_limits)) * self.rate_share * self.dt
         settings = Settings(
             margin=self.margin,
             dt=self.dt,
+            rate_share=self.rate_share,
             tip_speed=np.inf if self.tip_speed is None else self.tip_speed,
             trust=max(TRUST, fastest) if self.horizon >= TRUST_FROM else np.inf,
             reserve=RESERVE,
@@ -178,10 +186,14 @@ class ShapeConstrainedMPC:
             ),
         )
 
-    def step(self, state: MPCState, target: ArrayLike) -> tuple[MPCState, Command]:
+    def step(
+        self, state: MPCState, target: ArrayLike, measured: Measurement | None = None
+    ) -> tuple[MPCState, Command]:
         """One control step towards target (3,) [m]; never raises for a failed solve.
 
-        Where no safe command is found the robot holds still and the report says why.
+        Where no safe command is found the robot holds still and the report says why. What is
+        measured does not matter: the prediction starts from the controller's own nominal state
+        (17). `HierarchicalController` closes the loop.
         """
         began = perf_counter()
         goal = np.array(target, dtype=float)

@@ -91,7 +91,16 @@ class Report:
 
 @dataclass(frozen=True, kw_only=True)
 class Command:
-    """Actuator rates (P,) [m/s] to hold until the next step, and their report."""
+    """Actuator rates to hold until the next step, and their report.
+
+    Arguments:
+        rates: (P,) [m/s]
+        report: how they were found
+        local: the part of the rates that a local controller adds (P,) [m/s]; empty without one
+        clipped: share of what the local controller asked for that limits took away, 0 to 1
+    """
 
     rates: Array
     report: Report
+    local: Array = field(default_factory=lambda: np.zeros(0))
+    clipped: float = 0.0

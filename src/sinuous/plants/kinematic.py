@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sinuous.arrays import Array, ArrayLike
-from sinuous.plants.plant import Measurement
+from sinuous.measurement import Measurement
+from sinuous.plants.plant import Truth
 from sinuous.robots.robot import Robot
 
 
@@ -70,6 +71,7 @@ class KinematicPlant:
         self._until_redraw = 0.0
         self._w_x = np.zeros(len(self._lengths))
         self._w_y = np.zeros((len(robot.radii), 3))
+        self.truth = self._look()
 
     def step(self, rates: Array, dt: float) -> Measurement:
         """Move with actuator rates (P,) [m/s] for dt [s] and measure."""
@@ -79,9 +81,15 @@ class KinematicPlant:
             # Steps longer than the period draw once each and leave no backlog.
             self._until_redraw = max(self._until_redraw + 1.0 / self._disturbance.rate, dt)
         self._until_redraw -= dt
-        c = self.robot.configuration(self._lengths + self._w_x)
-        points = self.robot.points(c) + self._w_y
+        self.truth = self._look()
+        points = self.truth.points
         return Measurement(points=points, tip=points[-1], lengths=self._lengths)
+
+    def _look(self) -> Truth:
+        c = self.robot.configuration(self._lengths + self._w_x)
+        T_w_t = self.robot.tip_pose(c)
+        T_w_t[:3, 3] += self._w_y[-1]
+        return Truth(points=self.robot.points(c) + self._w_y, T_w_t=T_w_t, lengths=self._lengths)
 
     def _draw(self) -> None:
         d = self._disturbance

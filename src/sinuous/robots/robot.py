@@ -106,6 +106,10 @@ class Robot(Protocol):
         """Tip position (..., 3) [m]."""
         ...
 
+    def tip_pose(self, c: ArrayLike) -> Array:
+        """Tip pose T_w_t (..., 4, 4): the tip's position, oriented like the last disk."""
+        ...
+
     def lengths(self, c: ArrayLike) -> Array:
         """Actuator lengths (..., P) [m]."""
         ...

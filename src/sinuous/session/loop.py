@@ -6,7 +6,7 @@ import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.control.report import Command
-from sinuous.plants.plant import Measurement
+from sinuous.measurement import Measurement
 from sinuous.recording import Sample, status_name
 from sinuous.scenario import Scenario
 from sinuous.session.surface import SurfaceClearance, least_clearance

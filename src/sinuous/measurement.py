@@ -1,0 +1,37 @@
+"""What a controller gets to see of a robot."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from sinuous.arrays import Array
+
+
+def _nowhere() -> Array:
+    return np.zeros((0, 3))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Measurement:
+    """What sensors say about the robot. Positions are in the world frame.
+
+    Arguments:
+        tip: position (3,) of the tip, or of a coil beyond it [m]
+        lengths: actuator lengths (P,) by the encoders [m], always of this moment
+        points: guarded body points (S, 3) [m]; (0, 3) if only the tip is measured
+        covariance: of each of the points (S, 3, 3) [m^2]; (0, 3, 3) if it is not known
+        coil: where `tip` is measured, in the frame of the tip (3,) [m]
+        age: time since `tip` and `points` were taken [s]
+    """
+
+    tip: Array
+    lengths: Array
+    points: Array = field(default_factory=_nowhere)
+    covariance: Array = field(default_factory=lambda: np.zeros((0, 3, 3)))
+    coil: Array = field(default_factory=lambda: np.zeros(3))
+    age: float = 0.0
+
+    @property
+    def has_shape(self) -> bool:
+        """Whether the whole body was measured."""
+        return len(self.points) > 0
