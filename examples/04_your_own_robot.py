@@ -23,7 +23,7 @@ run = sn.run(sn.Scenario(name="endoscope", mpc=mpc, path=path, seed=1, disturban
 
 record = run.recording
 print(f"{len(record)} steps of {mpc.dt * 1e3:.1f} ms, {run.end.value}")
-for name, tips in (("model", record.nominal_tip), ("plant", record.measured_tip)):
+for name, tips in (("model", record.nominal_tip), ("plant", record.actual_tip)):
     error = np.linalg.norm(tips[-1] - record.target[-1])
     print(f"tip of the {name}: {error * 1e3:.3f} mm from the last way-point")
 for key in ("min_clearance_nominal_m", "min_clearance_actual_m"):

@@ -56,6 +56,11 @@ def make_sample(k: int, seed: int = 0, **changes: Any) -> Sample:
         "measured_points": rng.normal(size=(POINTS, 3)),
         "measured_tip": rng.normal(size=3),
         "measured_lengths": rng.normal(size=ACTUATORS),
+        "local_rates": rng.normal(size=ACTUATORS),
+        "clipped": float(rng.random()),
+        "offset": rng.normal(size=3),
+        "actual_points": rng.normal(size=(POINTS, 3)),
+        "actual_tip": rng.normal(size=3),
         "actual_clearance": np.inf,
         "status": "holding" if k % 7 == 3 else "tracking",
         "solve_time": float(rng.random()),
@@ -292,9 +297,9 @@ NOT_RECORDINGS = {
     "nonsense": (MAGIC + bytes(range(256)) * 4, "no header"),
     "long record": (MAGIC + struct.pack("<BQ", 12, 2**63), "no header"),
     "other": (_foreign(None), "no header"),
-    "newer": (_foreign({"format": "2"}), "format 2"),
-    "incomplete": (_foreign({"format": "1", "name": '"x"'}), "missing parts"),
-    "not json": (_foreign({"format": "1", "name": "{"}), "missing parts"),
+    "newer": (_foreign({"format": "3"}), "format 3"),
+    "incomplete": (_foreign({"format": "2", "name": '"x"'}), "missing parts"),
+    "not json": (_foreign({"format": "2", "name": "{"}), "missing parts"),
 }
 
 

@@ -44,6 +44,11 @@ def make_run(steps: int, margin: float = MARGIN, **columns: Any) -> Recording:
         "measured_points": np.zeros((2, 3)),
         "measured_tip": np.zeros(3),
         "measured_lengths": np.zeros(1),
+        "local_rates": np.zeros(1),
+        "clipped": 0.0,
+        "offset": np.zeros(3),
+        "actual_points": np.zeros((2, 3)),
+        "actual_tip": np.zeros(3),
         "actual_clearance": np.inf,
         "status": "tracking",
         "solve_time": 0.001,
@@ -61,9 +66,9 @@ def make_run(steps: int, margin: float = MARGIN, **columns: Any) -> Recording:
     )
 
 
-def test_tip_error_is_that_of_the_measured_tip() -> None:
+def test_tip_error_is_that_of_the_actual_tip() -> None:
     tips = [np.array([0.003, 0.004, 0.0]), np.array([0.0, 0.0, 0.001])]
-    summary = summarise(make_run(2, measured_tip=tips, nominal_tip=[np.ones(3)] * 2))
+    summary = summarise(make_run(2, actual_tip=tips, nominal_tip=[np.ones(3)] * 2))
     assert summary["tip_error_rms_m"] == pytest.approx(np.sqrt(13.0) * 1e-3, rel=ROUNDING)
     assert summary["tip_error_final_m"] == pytest.approx(0.001, rel=ROUNDING)
 
@@ -117,7 +122,7 @@ def test_a_run_without_steps_has_a_summary() -> None:
 
 def test_people_read_millimetres_and_milliseconds() -> None:
     stream = io.StringIO()
-    run = make_run(1, measured_tip=[np.array([0.0012345, 0.0, 0.0])], status=["holding"])
+    run = make_run(1, actual_tip=[np.array([0.0012345, 0.0, 0.0])], status=["holding"])
     print_summary(Console(file=stream, width=80), summarise(run, wall_time=0.01), title="free")
     text = stream.getvalue()
     for expected in ("free", "1.234 mm", "1.000 ms", "no wall", "10 x", "42"):

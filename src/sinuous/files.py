@@ -22,6 +22,7 @@ from sinuous.overrides import override
 from sinuous.quantities import (
     Angle,
     Curvature,
+    Decay,
     Duration,
     Frequency,
     Length,
@@ -35,6 +36,7 @@ from sinuous.tables import build
 __all__ = [
     "Angle",
     "Curvature",
+    "Decay",
     "Duration",
     "FieldError",
     "Frequency",

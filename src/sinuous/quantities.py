@@ -46,6 +46,7 @@ class Quantity(Enum):
     CURVATURE = "curvature"
     DURATION = "duration"
     FREQUENCY = "frequency"
+    DECAY = "rate of decay"
 
     @property
     def units(self) -> dict[str, Unit]:
@@ -64,6 +65,7 @@ _UNITS: dict[Quantity, dict[str, Unit]] = {
     Quantity.CURVATURE: {"1_m": _SI, "1_mm": Unit(multiply=1000.0)},
     Quantity.DURATION: {"s": _SI, "ms": _MILLI},
     Quantity.FREQUENCY: {"hz": _SI},
+    Quantity.DECAY: {"per_s": _SI},
 }
 
 Length = Annotated[float, Quantity.LENGTH]
@@ -72,6 +74,7 @@ Speed = Annotated[float, Quantity.SPEED]
 Curvature = Annotated[float, Quantity.CURVATURE]
 Duration = Annotated[float, Quantity.DURATION]
 Frequency = Annotated[float, Quantity.FREQUENCY]
+Decay = Annotated[float, Quantity.DECAY]
 
 
 def split_key(key: str) -> tuple[str, Quantity | None]:

@@ -19,7 +19,7 @@ def summarise(recording: Recording, *, wall_time: float | None = None) -> dict[s
     """The numbers of a run, ready for JSON: what is not finite, or not known, is None.
 
     `tip_error_rms_m`, `tip_error_final_m`
-        distance from the measured tip to the target of the same step, root mean square over
+        distance from the actual tip to the target of the same step, root mean square over
         all steps and in the last one; for a target that jumps, the way there counts
     `min_clearance_nominal_m`, `min_clearance_actual_m`
         least clearance of the body surface over all steps, of the controller's model and of
@@ -39,7 +39,7 @@ def summarise(recording: Recording, *, wall_time: float | None = None) -> dict[s
         recording: one run
         wall_time: how long the run took [s]; without it the real-time factor is None
     """
-    error = tip_error(recording.measured_tip, recording.target)
+    error = tip_error(recording.actual_tip, recording.target)
     simulated = len(recording) * recording.header.dt
     return {
         "tip_error_rms_m": _finite(np.sqrt(np.mean(error**2))) if len(error) else None,

@@ -60,8 +60,8 @@ def test_keep_outs_are_solids_of_their_own(run: Recording) -> None:
 def test_the_last_shape_is_the_robot_of_the_last_step(simulated: Simulate) -> None:
     run = simulated(seed=3, steps=40)
     scene = Scene.of(run)
-    assert np.array_equal(scene.shapes[-1], run.measured_points[-1] * 1e3)
-    assert np.array_equal(scene.shapes[0], run.measured_points[0] * 1e3)
+    assert np.array_equal(scene.shapes[-1], run.actual_points[-1] * 1e3)
+    assert np.array_equal(scene.shapes[0], run.actual_points[0] * 1e3)
 
 
 def reach(polygons: Array) -> Array:

@@ -67,7 +67,7 @@ class RunProgress:
             self._console.print(line, highlight=False, soft_wrap=True)
 
     def _note(self, sample: Sample) -> str:
-        error = float(np.linalg.norm(sample.measured_tip - sample.target)) * MM_PER_M
+        error = float(np.linalg.norm(sample.actual_tip - sample.target)) * MM_PER_M
         speed = self._done / max(perf_counter() - self._began, 1e-9)
         clearance = sample.nominal_clearance * MM_PER_M
         room = f"clearance {clearance:.2f} mm" if np.isfinite(clearance) else "no wall"

@@ -267,8 +267,11 @@ class ShapeConstrainedMPC:
         )
         return after, Command(rates=outcome.change / self.dt, report=report)
 
+    def hold(self, state: MPCState, reason: str) -> tuple[MPCState, Command]:
+        """A step that stays where the robot is, forgets the plan and says why."""
+        return self._hold(state, reason, perf_counter())
+
     def _hold(self, state: MPCState, reason: str, began: float) -> tuple[MPCState, Command]:
-        """Stay where the robot is, forget the plan and say why."""
         report = Report(
             status=Status.HOLDING,
             reason=reason,

@@ -97,10 +97,12 @@ class Command:
         rates: (P,) [m/s]
         report: how they were found
         local: the part of the rates that a local controller adds (P,) [m/s]; empty without one
-        clipped: share of what the local controller asked for that limits took away, 0 to 1
+        clipped: share of the rates asked for that limits took away, 0 to 1
+        offset: of the real tip from the nominal one, which the plan aims around (3,) [m]
     """
 
     rates: Array
     report: Report
     local: Array = field(default_factory=lambda: np.zeros(0))
     clipped: float = 0.0
+    offset: Array = field(default_factory=lambda: np.zeros(3))

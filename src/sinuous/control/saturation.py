@@ -26,7 +26,9 @@ def attainable(robot: Robot, lengths: Array, rates: Array, dt: float) -> Array:
     low, high = robot.length_limits.T
     low, high = np.minimum(low, lengths), np.maximum(high, lengths)
     for _ in range(ROUNDS):
-        c = _unbent(robot, robot.configuration(np.clip(robot.lengths(c), low, high)), now)
+        asked = robot.lengths(c)
+        allowed = np.clip(asked, low, high)
+        c = _unbent(robot, robot.configuration(allowed) if np.any(allowed != asked) else c, now)
     change = (robot.lengths(c) - robot.lengths(now)) / dt
     return change * speed_share(robot, change)
 
@@ -41,13 +43,15 @@ def speed_share(robot: Robot, rates: Array, base: Array | float = 0.0) -> float:
 
 
 def _unbent(robot: Robot, c: Array, now: Array) -> Array:
-    """The configuration with no segment bent beyond its limit, or beyond what it is now."""
-    theta, slope, offset, _ = robot.bend_limits
+    """The configuration with no segment bent beyond its limit, or farther beyond than it is now."""
+    if np.all(robot.bend_slack(c) >= 0.0):
+        return c
+    theta, slope, offset, pitch = robot.bend_limits
+    excess = np.maximum(-robot.bend_slack(now) / pitch, 0.0)
     c = c.copy()
     for j, column in enumerate(theta):
         bend = float(np.hypot(c[column], c[column + 1]))
-        limit = max(float(slope[j] @ c + offset[j]), 0.0)
-        limit = max(limit, float(np.hypot(now[column], now[column + 1])))
+        limit = max(float(slope[j] @ c + offset[j]), 0.0) + excess[j]
         if bend > limit:
             c[column : column + 2] *= limit / bend
     return c

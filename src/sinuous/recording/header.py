@@ -10,7 +10,7 @@ from sinuous.arrays import Array, IntArray
 from sinuous.recording.run import Header
 
 METADATA = "sinuous"
-FORMAT = 1
+FORMAT = 2
 """Grows when a recording can no longer be read by older versions."""
 
 ROBOT_FILE = "robot.toml"

@@ -238,7 +238,12 @@ TOPICS = (
     _joints("/measured/joint_states", "measured_lengths", None),
     _body("/measured/body", "measured_points"),
     _position("/measured/tip", "measured_tip"),
+    _body("/actual/body", "actual_points"),
+    _position("/actual/tip", "actual_tip"),
     _number("/clearance/actual", "actual_clearance"),
+    _vector("/local/rates", "local_rates"),
+    _number("/local/clipped", "clipped"),
+    _position("/offset", "offset"),
     _number("/solve_time", "solve_time"),
     Topic(
         name="/diagnostics",

@@ -57,9 +57,15 @@ class Sample:
     nominal_tip: Array  # (3,) [m]
     nominal_clearance: float  # least clearance of the body surface [m], inf in free space
 
-    measured_points: Array  # (S, 3) body points of the plant [m]
-    measured_tip: Array  # (3,) [m]
+    local_rates: Array  # (P,) part of the rates that a local controller added [m/s]
+    clipped: float  # share of the rates asked for that limits took, 0 to 1
+    offset: Array  # (3,) of the tip, as the controller learned it [m]
+
+    measured_points: Array  # (S, 3) body points as sensors see them [m]; (0, 3) if they do not
+    measured_tip: Array  # (3,) the tip, or the coil beyond it, as sensors see it [m]
     measured_lengths: Array  # (P,) [m]
+    actual_points: Array  # (S, 3) body points of the plant [m]
+    actual_tip: Array  # (3,) [m]
     actual_clearance: float  # as nominal_clearance, of the plant's body [m]
 
     status: str  # as `status_name` writes it
@@ -87,9 +93,15 @@ class Recording:
     nominal_tip: Array  # (K, 3) [m]
     nominal_clearance: Array  # (K,) [m]
 
+    local_rates: Array  # (K, P) [m/s]
+    clipped: Array  # (K,)
+    offset: Array  # (K, 3) [m]
+
     measured_points: Array  # (K, S, 3) [m]
     measured_tip: Array  # (K, 3) [m]
     measured_lengths: Array  # (K, P) [m]
+    actual_points: Array  # (K, S, 3) [m]
+    actual_tip: Array  # (K, 3) [m]
     actual_clearance: Array  # (K,) [m]
 
     status: tuple[str, ...]  # (K,)
@@ -119,9 +131,14 @@ class Recording:
             nominal_points=_stack([s.nominal_points for s in samples], (0, 3)),
             nominal_tip=_stack([s.nominal_tip for s in samples], (3,)),
             nominal_clearance=_stack([s.nominal_clearance for s in samples], ()),
+            local_rates=_stack([s.local_rates for s in samples], (p,)),
+            clipped=_stack([s.clipped for s in samples], ()),
+            offset=_stack([s.offset for s in samples], (3,)),
             measured_points=_stack([s.measured_points for s in samples], (0, 3)),
             measured_tip=_stack([s.measured_tip for s in samples], (3,)),
             measured_lengths=_stack([s.measured_lengths for s in samples], (p,)),
+            actual_points=_stack([s.actual_points for s in samples], (0, 3)),
+            actual_tip=_stack([s.actual_tip for s in samples], (3,)),
             actual_clearance=_stack([s.actual_clearance for s in samples], ()),
             status=tuple(s.status for s in samples),
             solve_time=_stack([s.solve_time for s in samples], ()),

@@ -11,7 +11,9 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from sinuous.arrays import Array
+from sinuous.control.local import LocalController
 from sinuous.control.mpc import Costs, ShapeConstrainedMPC
+from sinuous.control.offset_free import OffsetFree
 from sinuous.errors import InputError
 from sinuous.files import build, did_you_mean, override, read_path_csv, read_text, read_toml
 from sinuous.geometry.mesh import read_mesh
@@ -19,11 +21,16 @@ from sinuous.geometry.safe_zone import SafeZone
 from sinuous.plants.kinematic import Disturbance
 from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import load_robot, preset_names, robot_path
+from sinuous.scenario.law import Feedback, Projected, Reference
 from sinuous.scenario.path import Leg, timed_path, waypoints
 from sinuous.scenario.scenario import Scenario
 from sinuous.scenario.tables import (
+    ControlTable,
     CostChoice,
     DisturbanceTable,
+    LawChoice,
+    LocalTable,
+    OffsetFreeTable,
     PathTable,
     RobotChoice,
     ScenarioTable,
@@ -70,6 +77,7 @@ def load_scenario(path: str | Path, *, set: Iterable[str] = ()) -> Scenario:
         name=table.name,
         mpc=mpc,
         path=source.path(table.path),
+        law=_law(table),
         start=source.start(robot, table.robot.start_lengths),
         seed=table.seed,
         recover=table.recover,
@@ -213,6 +221,30 @@ class _Source:
             found=f"{error.found} ({error.file})",
             remedy=error.remedy,
         ) from error
+
+
+def _law(table: ScenarioTable) -> Feedback | Reference | Projected | None:
+    """What makes the controller, None for the plan alone."""
+    law = _unprojected(table.control)
+    return Projected(law=law) if table.control.project_target else law
+
+
+def _unprojected(table: ControlTable) -> Feedback | Reference | None:
+    if table.law is LawChoice.DLS:
+        return Reference(gain=table.dls.gain, damping=table.dls.damping)
+    if table.local is None and table.offset_free is None:
+        return None
+    local, offset = table.local or LocalTable(), table.offset_free or OffsetFreeTable()
+    gains = LocalController(
+        tip_gain=local.tip_gain,
+        body_gain=local.body_gain,
+        damping=local.damping,
+        share=local.share,
+    )
+    return Feedback(
+        local=gains if local.enabled else None,
+        offset_free=OffsetFree(time_constant=offset.time_constant, when=offset.when.when),
+    )
 
 
 def _disturbance(table: DisturbanceTable | None) -> Disturbance | None:

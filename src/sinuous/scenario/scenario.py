@@ -2,10 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from sinuous.arrays import Array
+from sinuous.control.controller import Controller
 from sinuous.control.mpc import ShapeConstrainedMPC
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.plants.kinematic import Disturbance, KinematicPlant
@@ -20,13 +23,15 @@ class Scenario:
 
     Arguments:
         name: what to call it
-        mpc: the controller; robot, zone, margin and time step are its own
+        mpc: the shape-constrained controller; robot, zone, margin and time step are its own
+        law: makes the controller that runs from it, None for the mpc itself
         path: where the tip shall go, leg by leg
         start: configuration (n,), by default the robot's home
         seed: of everything random
         recover: whether the start may be closer to a wall than the margin, or beyond it
         disturbance: of the plant, None for an exact one
         plant: makes the plant that stands in for the robot, None for a `KinematicPlant`
+        sensor: wraps a plant, given the seed; None if everything is measured exactly
         file: where the scenario comes from, for messages and to run it again
         text: the scenario as TOML, every path in it absolute; empty if it comes from Python
         robot_text: the robot file's TOML; empty if the robot comes from Python
@@ -38,11 +43,13 @@ class Scenario:
     name: str
     mpc: ShapeConstrainedMPC
     path: tuple[Leg, ...]
+    law: Callable[[ShapeConstrainedMPC], Controller[Any]] | None = None
     start: Array | None = None
     seed: int = 0
     recover: bool = False
     disturbance: Disturbance | None = None
     plant: Callable[[], Plant] | None = None
+    sensor: Callable[[Plant, int], Plant] | None = None
     file: str = "scenario"
     text: str = ""
     robot_text: str = ""
@@ -53,6 +60,11 @@ class Scenario:
         start = self.first_configuration
         if start.shape != self.robot.home.shape or not np.all(np.isfinite(start)):
             raise ValueError(f"start must be {len(self.robot.home)} finite numbers")
+
+    @cached_property
+    def controller(self) -> Controller[Any]:
+        """The controller that runs."""
+        return self.mpc if self.law is None else self.law(self.mpc)
 
     @property
     def robot(self) -> Robot:
@@ -70,7 +82,11 @@ class Scenario:
         return self.robot.home if self.start is None else np.asarray(self.start, dtype=np.float64)
 
     def new_plant(self) -> Plant:
-        """A plant at the start, its random numbers from the seed."""
+        """A plant at the start with its sensors, their random numbers from the seed."""
+        plant = self._bare_plant()
+        return plant if self.sensor is None else self.sensor(plant, self.seed)
+
+    def _bare_plant(self) -> Plant:
         if self.plant is not None:
             return self.plant()
         return KinematicPlant(

@@ -7,6 +7,7 @@ import numpy as np
 from sinuous.arrays import Array
 from sinuous.control.report import Command
 from sinuous.measurement import Measurement
+from sinuous.plants.plant import Truth
 from sinuous.recording import Sample, status_name
 from sinuous.scenario import Scenario
 from sinuous.session.surface import SurfaceClearance, least_clearance
@@ -25,32 +26,36 @@ def steps(scenario: Scenario) -> Iterator[Sample]:
 
     A leg ends when its target no longer moves and the body rests, or after its largest
     number of steps. The wall clock is never read but for the controller's own solve time.
+    The controller sees what sensors yield, never how the plant is.
 
     Raises:
         PlantFailure: if the plant measures something that is not a finite number
     """
-    mpc, plant = scenario.mpc, scenario.new_plant()
+    controller, plant = scenario.controller, scenario.new_plant()
+    dt, measured = controller.dt, None
     surface = SurfaceClearance.of(scenario.robot, scenario.zone)
-    state, count = mpc.init(scenario.first_configuration), 0
+    state, count = controller.init(scenario.first_configuration), 0
     for leg in scenario.path:
-        rest = Rest(mpc.dt)
-        for step in range(1, leg.steps(mpc.dt) + 1):
+        rest = Rest(dt)
+        for step in range(1, leg.steps(dt) + 1):
             count += 1
-            before, target = state.c, leg.at(step * mpc.dt)
-            state, command = mpc.step(state, target)
-            measured = plant.step(command.rates, mpc.dt)
-            if not _finite(measured):
+            before, target = state.c, leg.at(step * dt)
+            state, command = controller.step(state, target, measured)
+            measured = plant.step(command.rates, dt)
+            truth = plant.truth
+            if not _finite(measured, truth):
                 raise PlantFailure
             yield _sample(
                 scenario,
-                time=count * mpc.dt,
+                time=count * dt,
                 target=target,
                 c=state.c,
                 command=command,
                 measured=measured,
+                truth=truth,
                 clearance=surface.least(before, state.c),
             )
-            if rest.after(command.report.points) and step * mpc.dt >= leg.moving:
+            if rest.after(command.report.points) and step * dt >= leg.moving:
                 break
 
 
@@ -75,8 +80,15 @@ class Rest:
         return self._still >= REST_STEPS
 
 
-def _finite(measured: Measurement) -> bool:
-    values = (measured.points, measured.tip, measured.lengths)
+def _finite(measured: Measurement, truth: Truth) -> bool:
+    values = (
+        measured.points,
+        measured.tip,
+        measured.lengths,
+        truth.points,
+        truth.T_w_t,
+        truth.lengths,
+    )
     return all(bool(np.all(np.isfinite(value))) for value in values)
 
 
@@ -88,6 +100,7 @@ def _sample(
     c: Array,
     command: Command,
     measured: Measurement,
+    truth: Truth,
     clearance: float,
 ) -> Sample:
     robot, report = scenario.robot, command.report
@@ -103,7 +116,12 @@ def _sample(
         measured_points=measured.points,
         measured_tip=measured.tip,
         measured_lengths=measured.lengths,
-        actual_clearance=least_clearance(scenario.zone, robot, measured.points),
+        local_rates=command.local if len(command.local) else np.zeros(len(command.rates)),
+        clipped=command.clipped,
+        offset=command.offset,
+        actual_points=truth.points,
+        actual_tip=truth.T_w_t[:3, 3],
+        actual_clearance=least_clearance(scenario.zone, robot, truth.points),
         status=status_name(report.status),
         solve_time=report.solve_time,
         iterations=report.iterations,

@@ -10,6 +10,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+from sinuous.measurement import Measurement
 from sinuous.recording import Recording, Sample
 from sinuous.scenario import Scenario
 from sinuous.scenario.start import check_start
@@ -97,8 +98,10 @@ def run(
 
 def warm_up(scenario: Scenario) -> None:
     """Compile what the first step needs, so that no solve time contains it."""
-    state = scenario.mpc.init(scenario.first_configuration)
-    scenario.mpc.step(state, scenario.path[0].at(scenario.mpc.dt))
+    controller, c = scenario.controller, scenario.first_configuration
+    robot, target = scenario.robot, scenario.path[0].at(scenario.mpc.dt)
+    measured = Measurement(tip=robot.tip(c), points=robot.points(c), lengths=robot.lengths(c))
+    controller.step(controller.init(c), target, measured)
 
 
 @contextmanager

@@ -87,7 +87,7 @@ def _draw_tip_error(axes: Axes, runs: Runs) -> None:
     axes.set(xlabel=TIME_LABEL, ylabel="tip error [mm]")
     errors: list[Array] = []
     for label, color, run in _not_empty(axes, runs):
-        error = np.maximum(tip_error(run.measured_tip, run.target) * MM_PER_M, LEAST_ERROR_MM)
+        error = np.maximum(tip_error(run.actual_tip, run.target) * MM_PER_M, LEAST_ERROR_MM)
         axes.plot(run.time, error, color=color, label=label)
         errors.append(error)
     if errors:

@@ -59,10 +59,10 @@ def draw_tip_error(axes: Axes, recording: Recording) -> None:
     if not prepare(axes, recording, "tip error [mm]"):
         return
     nominal = _error_mm(recording.nominal_tip, recording.target)
-    measured = _error_mm(recording.measured_tip, recording.target)
-    axes.plot(recording.time, measured, color=MEASURED, label="measured", **BENEATH)
+    actual = _error_mm(recording.actual_tip, recording.target)
+    axes.plot(recording.time, actual, color=MEASURED, label="actual", **BENEATH)
     axes.plot(recording.time, nominal, color=NOMINAL, label="nominal")
-    scale_error(axes, np.concatenate((nominal, measured)))
+    scale_error(axes, np.concatenate((nominal, actual)))
     mark_switches(axes, recording)
 
 

@@ -63,7 +63,7 @@ class Scene:
         """Prepare a run that has steps."""
         header = recording.header
         part, triangles = header.zone_parts, header.zone_triangles * MM_PER_M
-        points = recording.measured_points * MM_PER_M
+        points = recording.actual_points * MM_PER_M
         stops = way_points(recording)
         jumps = len(stops) > 0
         shown = triangles[part != ZonePart.GUIDE]
@@ -89,7 +89,7 @@ class Scene:
             ),
             shapes=points[chosen],
             colors=colors,
-            tip=recording.measured_tip * MM_PER_M,
+            tip=recording.actual_tip * MM_PER_M,
             targets=(stops if jumps else recording.target) * MM_PER_M,
             jumps=jumps,
         )
