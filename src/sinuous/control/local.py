@@ -34,8 +34,8 @@ class LocalController:
     """
 
     tip_gain: float = 15.0
-    body_gain: float = 15.0
-    damping: float = 0.01
+    body_gain: float = 30.0
+    damping: float = 1.0
     share: float = 0.2
 
     def __post_init__(self) -> None:
