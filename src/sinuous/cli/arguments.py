@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from tyro.conf import Positional, UseAppendAction, arg
 
 Folder = Annotated[str, arg(metavar="DIR")]
+Paper = Literal["hachen2025"]
 What = Literal["mpc", "scaling", "tails", "rate", "qp", "startup"]
 Assignments = Annotated[UseAppendAction[tuple[tuple[str, ...], ...]], arg(metavar="KEY=VALUE ...")]
 
@@ -60,6 +61,26 @@ class Compare:
     """another one"""
     out: Folder
     """folder for the figure"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reproduce:
+    """Run a paper's experiments: figures, the data behind them, and claims.json, which lays what
+    the paper says beside what is measured here.
+
+    hachen2025: shape-constrained control of an extensible tendon-driven robot.
+    """
+
+    paper: Positional[Annotated[Paper, arg(metavar="{hachen2025}")]]
+    """which paper"""
+    out: Folder
+    """folder for the results; files of an earlier run are overwritten"""
+    quick: Annotated[bool, arg()] = False
+    """only show that it works: short runs, and figures that say so"""
+    only: Annotated[tuple[str, ...], arg(metavar="NAME ...")] = ()
+    """run these experiments only"""
+    processes: Annotated[int | None, arg(metavar="N")] = None
+    """how many processes to use; by default one for each core"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import tyro
 
-from sinuous.cli.arguments import Bench, Check, Compare, Run
+from sinuous.cli.arguments import Bench, Check, Compare, Reproduce, Run
 from sinuous.cli.codes import BAD_INPUT, GOOD, INTERRUPTED
 from sinuous.errors import InputError
 
@@ -21,7 +21,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     try:
         verb = tyro.cli(
-            Run | Check | Compare | Bench,  # pyright: ignore[reportArgumentType]
+            Run | Check | Compare | Reproduce | Bench,  # pyright: ignore[reportArgumentType]
             prog="sinuous",
             description="Steer tendon-driven continuum robots inside a mesh without touching it.",
             args=None if argv is None else list(argv),
@@ -38,7 +38,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return INTERRUPTED
 
 
-def _call(verb: Run | Check | Compare | Bench) -> int:
+def _call(verb: Run | Check | Compare | Reproduce | Bench) -> int:
     match verb:
         case Run():
             from sinuous.cli.run import run
@@ -52,6 +52,10 @@ def _call(verb: Run | Check | Compare | Bench) -> int:
             from sinuous.cli.compare import compare
 
             return compare(verb)
+        case Reproduce():
+            from sinuous.cli.reproduce import reproduce
+
+            return reproduce(verb)
         case Bench():
             from sinuous.cli.bench import bench
 

@@ -1,6 +1,8 @@
 """How figures look: one palette that colour-blind readers can tell apart, one style."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
@@ -67,12 +69,27 @@ STYLE: dict[Any, Any] = {
 }
 
 
+_STAMP = ContextVar("stamp", default="")
+
+
+@contextmanager
+def stamped(text: str) -> Generator[None]:
+    """Write that text across the corner of every figure saved meanwhile; nothing if empty."""
+    before = _STAMP.set(text)
+    try:
+        yield
+    finally:
+        _STAMP.reset(before)
+
+
 def save(path: Path, size: tuple[float, float], draw: Callable[[Figure], None]) -> Path:
     """Draw one figure of that size [inch] and write it, without pyplot's global figures."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=size, layout="constrained")
         FigureCanvasAgg(figure)
         draw(figure)
+        if text := _STAMP.get():
+            figure.text(0.995, 0.995, text, ha="right", va="top", color=VERMILION, weight="bold")
         figure.savefig(path, dpi=DPI)
     return path
 
