@@ -6,7 +6,6 @@ reads a path, `write_text` writes whole files or nothing.
 """
 
 import errno
-import math
 import os
 import re
 import tomllib
@@ -16,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from sinuous.arrays import Array
+from sinuous.csv_table import read_columns
 from sinuous.errors import InputError
 from sinuous.explain import FieldError, Place, did_you_mean, one_of
 from sinuous.overrides import override
@@ -28,7 +28,6 @@ from sinuous.quantities import (
     Length,
     Quantity,
     Speed,
-    Unit,
     length_unit,
 )
 from sinuous.tables import build
@@ -158,66 +157,10 @@ def read_path_csv(path: str | Path) -> tuple[Array, Array]:
         InputError: naming row and column, if something is missing, not a finite number,
             or the times do not increase
     """
-    lines = read_text(path).splitlines()
-    rows = [(row, line.split(",")) for row, line in enumerate(lines, start=1) if line.strip()]
-    if not rows:
-        raise _csv_error(path, "", "a header and rows of numbers", "an empty file")
-    header = [cell.strip() for cell in rows[0][1]]
-    columns = [_column(path, header, name) for name in _PATH_COLUMNS]
-    if len(rows) == 1:
-        raise _csv_error(path, "", "at least one row of numbers", "only a header")
-    values = np.array(
-        [
-            [_cell(path, row, cells, header[index], index, unit) for index, unit in columns]
-            for row, cells in rows[1:]
-        ]
+    found = read_columns(
+        read_text(path), file=str(path), columns=_PATH_COLUMNS, example="t_s,x_mm,y_mm,z_mm"
     )
-    late = np.flatnonzero(np.diff(values[:, 0]) <= 0.0)
-    if late.size:
-        row, cells = rows[int(late[0]) + 2]
-        index = columns[0][0]
-        where = f"row {row}, column {header[index]}"
-        raise _csv_error(path, where, "a time after the one before", cells[index].strip())
-    return values[:, 0].copy(), values[:, 1:].copy()
-
-
-def _column(path: str | Path, header: list[str], name: str) -> tuple[int, Unit]:
-    """Return the index and the unit of a column."""
-    quantity = _PATH_COLUMNS[name]
-    keys = quantity.keys(name)
-    found = [index for index, cell in enumerate(header) if cell in keys]
-    if len(found) != 1:
-        raise InputError(
-            file=str(path),
-            field="row 1",
-            expected=f"one column {one_of(keys)}",
-            found=f"the columns {', '.join(header)}",
-            remedy="Name the columns in the first row, like t_s,x_mm,y_mm,z_mm.",
-        )
-    return found[0], quantity.units[header[found[0]].removeprefix(f"{name}_")]
-
-
-def _cell(
-    path: str | Path, row: int, cells: list[str], column: str, index: int, unit: Unit
-) -> float:
-    where = f"row {row}, column {column}"
-    text = cells[index].strip() if index < len(cells) else ""
-    try:
-        value = unit.to_si(float(text))
-    except ValueError:
-        raise _csv_error(path, where, "a number", f'"{text}"' if text else "nothing") from None
-    if not math.isfinite(value):
-        raise _csv_error(path, where, "a finite number", text)
-    return value
-
-
-def _csv_error(path: str | Path, where: str, expected: str, found: str) -> InputError:
-    remedy = (
-        "Correct or remove that row."
-        if where
-        else "Write a header like t_s,x_mm,y_mm,z_mm and a row for each point."
-    )
-    return InputError(file=str(path), field=where, expected=expected, found=found, remedy=remedy)
+    return found["t"], np.stack([found[axis] for axis in ("x", "y", "z")], axis=1)
 
 
 def write_text(path: str | Path, text: str) -> None:

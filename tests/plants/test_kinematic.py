@@ -7,6 +7,7 @@ import pytest
 
 from sinuous.arrays import Array, ArrayLike
 from sinuous.plants.kinematic import Disturbance, KinematicPlant
+from sinuous.robots.pcc_kernels import Chain
 from sinuous.robots.robot_file import load_robot
 
 DT = 1 / 30  # [s]
@@ -23,6 +24,14 @@ class Transparent:
     def __init__(self, count: int) -> None:
         self.home = np.zeros(count)
         self.radii = np.ones(count + 1)
+        self.chain = Chain(
+            theta_column=np.array([-1]),
+            gamma_column=np.array([-1]),
+            fixed_length=np.ones(1),
+            direction=np.array([[0.0, 0.0, 1.0]]),
+            section=np.zeros(count + 1, dtype=np.int64),
+            fraction=np.linspace(0.0, 1.0, count + 1),
+        )
 
     def lengths(self, c: ArrayLike) -> Array:
         return np.asarray(c, dtype=float)

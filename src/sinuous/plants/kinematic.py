@@ -7,6 +7,7 @@ import numpy as np
 from sinuous.arrays import Array, ArrayLike
 from sinuous.measurement import Measurement
 from sinuous.plants.plant import Truth
+from sinuous.robots.centreline import Centreline
 from sinuous.robots.robot import Robot
 
 
@@ -47,7 +48,8 @@ class KinematicPlant:
 
     w_x is drawn for every actuator, which leaves the sum rule (19); the shape is that of the
     nearest lengths that keep it: the backbone as disturbed, the bend by least squares over
-    the cables (notes B14).  w_y moves every body point but the fixed base.
+    the cables (notes B14).  w_y moves every body point but the fixed base; it is no bend, so
+    the curvature is that of the shape without it.
 
     Arguments:
         robot: the robot to imitate
@@ -65,6 +67,7 @@ class KinematicPlant:
         start: ArrayLike | None = None,
     ) -> None:
         self.robot = robot
+        self._line = Centreline(robot=robot)
         self._rng = np.random.default_rng(seed)
         self._disturbance = disturbance or Disturbance()
         self._lengths = robot.lengths(robot.home if start is None else start)
@@ -89,7 +92,12 @@ class KinematicPlant:
         c = self.robot.configuration(self._lengths + self._w_x)
         T_w_t = self.robot.tip_pose(c)
         T_w_t[:3, 3] += self._w_y[-1]
-        return Truth(points=self.robot.points(c) + self._w_y, T_w_t=T_w_t, lengths=self._lengths)
+        return Truth(
+            points=self.robot.points(c) + self._w_y,
+            T_w_t=T_w_t,
+            lengths=self._lengths,
+            curvature=self._line.model(c).curvature,
+        )
 
     def _draw(self) -> None:
         d = self._disturbance

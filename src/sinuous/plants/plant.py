@@ -1,7 +1,9 @@
 """What stands in for hardware: takes actuator rates, yields a measurement."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
+
+import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.measurement import Measurement
@@ -15,11 +17,14 @@ class Truth:
         points: guarded body points (S, 3) in the world frame [m]
         T_w_t: pose of the tip (4, 4)
         lengths: actuator lengths (P,) [m]
+        curvature: of the centre line on the arcs between the points (S - 1, 2) [1/m], see
+            `robots.centreline`; (0, 2) if the plant does not know it
     """
 
     points: Array
     T_w_t: Array
     lengths: Array
+    curvature: Array = field(default_factory=lambda: np.zeros((0, 2)))
 
 
 class Plant(Protocol):

@@ -92,6 +92,11 @@ class Layout:
         return limits
 
     @cached_property
+    def inverse_holes(self) -> list[Array]:
+        """Bend of every segment from its cables, by least squares (2, m) [1/m]."""
+        return [np.array(np.linalg.pinv(s.holes), dtype=np.float64) for s in self.segments]
+
+    @cached_property
     def length_map(self) -> tuple[Array, Array]:
         """A (P, n) and b (P,) with lengths = A c + b.
 

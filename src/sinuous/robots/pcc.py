@@ -119,14 +119,16 @@ class PccRobot:
         if self.insertion:
             c[..., 0] = q[..., 0]
             row = 1
-        for segment, (theta, gamma) in zip(self.segments, self._layout.columns, strict=True):
-            cables = slice(row, row + len(segment.cable_angles))
+        for inverse, (theta, gamma) in zip(
+            self._layout.inverse_holes, self._layout.columns, strict=True
+        ):
+            cables = slice(row, row + inverse.shape[1])
             row = cables.stop
             if gamma >= 0:
                 c[..., gamma] = q[..., row] - (c @ A[row] + b[row])
                 row += 1
             rest = q[..., cables] - (c @ A[cables].T + b[cables])
-            c[..., theta : theta + 2] = -rest @ np.linalg.pinv(segment.holes).T
+            c[..., theta : theta + 2] = -rest @ inverse.T
         return c
 
     # --- body ----------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Controllers of a scenario other than the plain plan, made from its `ShapeConstrainedMPC`."""
+"""Controllers other than the plain plan, made from a scenario's `ShapeConstrainedMPC`."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -10,6 +10,7 @@ from sinuous.control.local import LocalController
 from sinuous.control.mpc import ShapeConstrainedMPC
 from sinuous.control.offset_free import OffsetFree
 from sinuous.control.projected import ProjectedTarget
+from sinuous.scenario.control_tables import ControlTable, LawChoice, LocalTable, OffsetFreeTable
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,3 +66,32 @@ class Projected:
     def __call__(self, mpc: ShapeConstrainedMPC) -> Controller[Any]:
         """The controller behind the projection."""
         return ProjectedTarget(mpc if self.law is None else self.law(mpc))
+
+
+def law_of(table: ControlTable, *, seen: bool) -> Feedback | Reference | Projected | None:
+    """What makes the controller, None for the plan alone.
+
+    Arguments:
+        seen: whether sensors say something of the robot that the plan does not know, so that
+            the plan gets feedback even if no table says so
+    """
+    law = _unprojected(table, seen=seen)
+    return Projected(law=law) if table.project_target else law
+
+
+def _unprojected(table: ControlTable, *, seen: bool) -> Feedback | Reference | None:
+    if table.law is LawChoice.DLS:
+        return Reference(gain=table.dls.gain, damping=table.dls.damping)
+    if not seen and table.local is None and table.offset_free is None:
+        return None
+    local, offset = table.local or LocalTable(), table.offset_free or OffsetFreeTable()
+    gains = LocalController(
+        tip_gain=local.tip_gain,
+        body_gain=local.body_gain,
+        damping=local.damping,
+        share=local.share,
+    )
+    return Feedback(
+        local=gains if local.enabled else None,
+        offset_free=OffsetFree(time_constant=offset.time_constant, when=offset.when.when),
+    )

@@ -3,6 +3,7 @@
 import copy
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import NoReturn, TypeVar, cast
 
@@ -11,31 +12,20 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from sinuous.arrays import Array
-from sinuous.control.local import LocalController
 from sinuous.control.mpc import Costs, ShapeConstrainedMPC
-from sinuous.control.offset_free import OffsetFree
 from sinuous.errors import InputError
 from sinuous.files import build, did_you_mean, override, read_path_csv, read_text, read_toml
 from sinuous.geometry.mesh import read_mesh
 from sinuous.geometry.safe_zone import SafeZone
-from sinuous.plants.kinematic import Disturbance
+from sinuous.plants.recorded import RecordedPlant, read_record_csv
 from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import load_robot, preset_names, robot_path
-from sinuous.scenario.law import Feedback, Projected, Reference
+from sinuous.scenario.law import law_of
 from sinuous.scenario.path import Leg, timed_path, waypoints
+from sinuous.scenario.plant_tables import RecordedTable
 from sinuous.scenario.scenario import Scenario
-from sinuous.scenario.tables import (
-    ControlTable,
-    CostChoice,
-    DisturbanceTable,
-    LawChoice,
-    LocalTable,
-    OffsetFreeTable,
-    PathTable,
-    RobotChoice,
-    ScenarioTable,
-    ZoneTable,
-)
+from sinuous.scenario.seen import disturbance_of, mismatch_of, sensor_of
+from sinuous.scenario.tables import CostChoice, PathTable, RobotChoice, ScenarioTable, ZoneTable
 from sinuous.scenario.text import toml_text
 
 T = TypeVar("T")
@@ -73,15 +63,23 @@ def load_scenario(path: str | Path, *, set: Iterable[str] = ()) -> Scenario:
         tip_speed=table.mpc.tip_speed,
         budget=table.mpc.budget,
     )
+    recorded = source.recorded(robot, table.plant.recorded)
+    start = source.start(robot, table.robot.start_lengths)
+    if recorded is not None and start is None:
+        start = robot.configuration(recorded().truth.lengths)
+    seen = table.sensor is not None or recorded is not None
     return Scenario(
         name=table.name,
         mpc=mpc,
         path=source.path(table.path),
-        law=_law(table),
-        start=source.start(robot, table.robot.start_lengths),
+        law=law_of(table.control, seen=seen),
+        start=start,
         seed=table.seed,
         recover=table.recover,
-        disturbance=_disturbance(table.plant.disturbance),
+        disturbance=disturbance_of(table.plant.disturbance),
+        mismatch=mismatch_of(table.plant.mismatch),
+        plant=recorded,
+        sensor=sensor_of(table.sensor, robot),
         file=str(path),
         text=toml_text(_absolute(data, source)),
         robot_text=read_text(robot_path(source.robot_name(table.robot.file))),
@@ -193,6 +191,17 @@ class _Source:
         times, points = read_path_csv(path)
         return timed_path(times, points, max_steps=table.max_steps)
 
+    def recorded(
+        self, robot: PccRobot, table: RecordedTable | None
+    ) -> Callable[[], RecordedPlant] | None:
+        """What makes the plant that plays a record back, None for none."""
+        if table is None:
+            return None
+        path = self.at(table.csv)
+        self.found("plant.recorded.csv", path)
+        record = read_record_csv(path, robot)
+        return partial(RecordedPlant, robot, record, coil=table.coil)
+
     def found(self, field: str, path: Path) -> None:
         """Refuse a file that is not there, in the words of the scenario."""
         if not path.is_file():
@@ -223,42 +232,6 @@ class _Source:
         ) from error
 
 
-def _law(table: ScenarioTable) -> Feedback | Reference | Projected | None:
-    """What makes the controller, None for the plan alone."""
-    law = _unprojected(table.control)
-    return Projected(law=law) if table.control.project_target else law
-
-
-def _unprojected(table: ControlTable) -> Feedback | Reference | None:
-    if table.law is LawChoice.DLS:
-        return Reference(gain=table.dls.gain, damping=table.dls.damping)
-    if table.local is None and table.offset_free is None:
-        return None
-    local, offset = table.local or LocalTable(), table.offset_free or OffsetFreeTable()
-    gains = LocalController(
-        tip_gain=local.tip_gain,
-        body_gain=local.body_gain,
-        damping=local.damping,
-        share=local.share,
-    )
-    return Feedback(
-        local=gains if local.enabled else None,
-        offset_free=OffsetFree(time_constant=offset.time_constant, when=offset.when.when),
-    )
-
-
-def _disturbance(table: DisturbanceTable | None) -> Disturbance | None:
-    if table is None:
-        return None
-    return Disturbance(
-        length_std=table.length_std,
-        length_max=table.length_max,
-        point_std=table.point_std,
-        point_max=table.point_max,
-        rate=table.rate,
-    )
-
-
 def _absolute(data: Mapping[str, object], source: _Source) -> dict[str, object]:
     """The file's table with absolute paths, so that its copy in a recording runs anywhere."""
     result = copy.deepcopy(dict(data))
@@ -266,6 +239,9 @@ def _absolute(data: Mapping[str, object], source: _Source) -> dict[str, object]:
     for name, keys in _PATH_KEYS.items():
         for key in keys & tables[name].keys():
             tables[name][key] = _resolved(tables[name][key], source)
+    plant = cast(dict[str, dict[str, object]], result.get("plant", {}))
+    if "recorded" in plant:
+        plant["recorded"]["csv"] = _resolved(plant["recorded"]["csv"], source)
     robot = tables["robot"]
     name = source.robot_name(str(robot["file"]))
     robot["file"] = name if isinstance(name, str) else str(name.resolve())

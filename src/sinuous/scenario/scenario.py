@@ -12,6 +12,7 @@ from sinuous.control.controller import Controller
 from sinuous.control.mpc import ShapeConstrainedMPC
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.plants.kinematic import Disturbance, KinematicPlant
+from sinuous.plants.mismatched import Mismatch, MismatchedPlant
 from sinuous.plants.plant import Plant
 from sinuous.robots.robot import Robot
 from sinuous.scenario.path import Leg
@@ -30,6 +31,7 @@ class Scenario:
         seed: of everything random
         recover: whether the start may be closer to a wall than the margin, or beyond it
         disturbance: of the plant, None for an exact one
+        mismatch: of the plant, None for one whose shapes are the model's
         plant: makes the plant that stands in for the robot, None for a `KinematicPlant`
         sensor: wraps a plant, given the seed; None if everything is measured exactly
         file: where the scenario comes from, for messages and to run it again
@@ -48,6 +50,7 @@ class Scenario:
     seed: int = 0
     recover: bool = False
     disturbance: Disturbance | None = None
+    mismatch: Mismatch | None = None
     plant: Callable[[], Plant] | None = None
     sensor: Callable[[Plant, int], Plant] | None = None
     file: str = "scenario"
@@ -89,6 +92,13 @@ class Scenario:
     def _bare_plant(self) -> Plant:
         if self.plant is not None:
             return self.plant()
+        if self.mismatch is not None:
+            return MismatchedPlant(
+                self.robot,
+                seed=self.seed,
+                mismatch=self.mismatch,
+                start=self.first_configuration,
+            )
         return KinematicPlant(
             self.robot,
             seed=self.seed,
