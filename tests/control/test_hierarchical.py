@@ -157,6 +157,21 @@ def test_a_constant_offset_is_gone_with_feedback_and_stays_without() -> None:
     assert at_rest(None, OffsetFree(), tip_only=False) == pytest.approx(off, abs=ARRIVED)
 
 
+def test_an_offset_of_a_robot_that_does_not_follow_is_limited() -> None:
+    """It stands still whatever it is told: without a limit the plan runs away from it."""
+
+    def largest(limit: float) -> float:
+        offset = OffsetFree(when=When.ALWAYS, time_constant=0.1, limit=limit)
+        controller = HierarchicalController(MPC, local=None, offset_free=offset)
+        state, stuck = controller.init(ROBOT.home), measured(ROBOT.home)
+        for _ in range(200):
+            state, command = controller.step(state, TARGET, stuck)
+        return float(np.linalg.norm(command.offset))
+
+    assert largest(0.015) == pytest.approx(0.015)
+    assert largest(10.0) > 0.1
+
+
 def test_feedback_lowers_the_error_under_the_printed_disturbance() -> None:
     def mean_error(local: LocalController | None) -> float:
         controller = HierarchicalController(MPC, local=local, offset_free=PLAN_ONLY)

@@ -6,13 +6,14 @@ that is weighed against the tip's error, and limits of the actuators cut off wha
 
 from dataclasses import KW_ONLY, dataclass
 from enum import Enum
+from functools import cached_property
 from math import isfinite
 from time import perf_counter
 
 import numpy as np
 
 from sinuous.arrays import Array, ArrayLike, IntArray
-from sinuous.control.observed import Observed, is_finite, observe
+from sinuous.control.observed import is_finite, observe
 from sinuous.control.report import Command, Report, Status
 from sinuous.control.saturation import attainable, speed_share
 from sinuous.control.terms import PRINTED_RATE
@@ -55,8 +56,9 @@ class DampedLeastSquares:
 
     - J is by the actuators, J_c L+: what comes out keeps the coupling rules (19).
     - As printed the penalty's sign is +, which climbs it (notes B12).
-    - dh/du = dt dh/dx, by (14), with the dt of the print, 1/30 s. Taking dh/dx itself would make
-      the penalty 30 times as stiff, and one disk at the wall enough to make it unstable.
+    - dh/du is `penalty` dh/dx. By (14) as printed the factor is dt, 1/30 s, and the penalty so soft
+      that a winding passage does not hold the body. That k_j is a gain per step makes u a
+      displacement and the factor 1: 30 times as stiff.
     - c_d is a distance of disk centres: the body's radius and the margin. More points than the
       disks would multiply the penalty's stiffness. The tip is excluded as printed, and so is what
       no actuator can move.
@@ -74,10 +76,11 @@ class DampedLeastSquares:
         dt: time between steps [s]
         gain: k_j, share of the error that a step at 30 Hz removes
         damping: c_w, for metres of tip by metres of actuator
+        penalty: dh/du by dh/dx
         sign: of the penalty
 
     Raises:
-        ValueError: if margin, dt, gain or damping make no sense
+        ValueError: if margin, dt, gain, damping or penalty make no sense
     """
 
     robot: Robot
@@ -87,6 +90,7 @@ class DampedLeastSquares:
     dt: float = 1 / 30
     gain: float = 0.05
     damping: float = 1.0
+    penalty: float = 1.0 / PRINTED_RATE
     sign: PenaltySign = PenaltySign.DESCENT
 
     def __post_init__(self) -> None:
@@ -98,19 +102,21 @@ class DampedLeastSquares:
             raise ValueError(f"gain must be above 0 and at most 1, not {self.gain}")
         if not (isfinite(self.damping) and self.damping > 0.0):
             raise ValueError(f"damping must be positive, not {self.damping}")
+        if not (isfinite(self.penalty) and self.penalty >= 0.0):
+            raise ValueError(f"penalty must be zero or more, not {self.penalty}")
 
     @property
     def gain_per_step(self) -> float:
         """k_j at this controller's rate: what is left of an error decays as it does at 30 Hz."""
-        return 1.0 - (1.0 - self.gain) ** (30.0 * self.dt)
+        return 1.0 - (1.0 - self.gain) ** (PRINTED_RATE * self.dt)
 
-    @property
+    @cached_property
     def guarded(self) -> IntArray:
         """Which body points have a penalty: disks that move, but for the tip (31)."""
         disks = self.robot.disk_indices
         return disks[self.robot.movable[disks] & (disks != len(self.robot.radii) - 1)]
 
-    def penalty(self, points: Array) -> tuple[float, Array]:
+    def collision_cost(self, points: Array) -> tuple[float, Array]:
         """h (31) [m^2] of body points (S, 3) [m], and its derivative by them (S, 3) [m]."""
         gradient, disks = np.zeros_like(points), self.guarded
         near = self.zone.nearest(points[disks])
@@ -130,8 +136,8 @@ class DampedLeastSquares:
             points: of the body, where the walls are felt (S, 3) [m]
         """
         jacobian, L = self.robot.points_jacobian(c), self.robot.lengths_jacobian(c)
-        _, slope = self.penalty(points)
-        push = self.sign.value / PRINTED_RATE * np.einsum("sdn,sd->n", jacobian, slope)
+        _, slope = self.collision_cost(points)
+        push = self.sign.value * self.penalty * np.einsum("sdn,sd->n", jacobian, slope)
         J = jacobian[-1]
         # By c: L+ L+' = (L'L)^-1 stands where the actuators' unit matrix stood.
         both = np.linalg.solve(L.T @ L, np.column_stack([J.T, push]))
@@ -158,27 +164,23 @@ class DampedLeastSquares:
 
         What is not finite is a fault: the robot holds still and the report says why.
         """
-        began = perf_counter()
-        goal = np.array(target, dtype=float)
-        if goal.shape != (3,) or not np.all(np.isfinite(goal)):
-            return self._hold(state, "the target is not three finite numbers", began)
-        if not np.all(np.isfinite(state.c)):
-            return self._hold(state, "the state is not finite", began)
-        if measured is not None and not is_finite(measured):
-            return self._hold(state, "the measurement is not finite", began)
+        began, goal = perf_counter(), np.array(target, dtype=float)
+        if fault := _fault(state, goal, measured):
+            return self._hold(state, fault, began)
         lengths = self.robot.lengths(state.c) if measured is None else measured.lengths
         with np.errstate(all="ignore"):  # numbers may be finite and too large to compute with
             c = self.robot.configuration(lengths)
-            model, seen = self.robot.points(c), self._seen(c, measured)
-            points = seen.points if seen.has_shape else model
-            u = self.displacement(c, goal - seen.tip, points)
+            model = self.robot.points(c)
+            tip, points = self._seen(c, model, measured)
+            u = self.displacement(c, goal - tip, points)
             rates = self._attainable(lengths, u / self.dt)
-        if not np.all(np.isfinite(rates)):
-            return self._hold(state, "the command is not finite", began)
-        after = DLSState(c=self.robot.configuration(lengths + self.dt * rates))
-        moved = self.robot.points(after.c) - model
+            if not np.all(np.isfinite(rates)):
+                return self._hold(state, "the command is not finite", began)
+            after = DLSState(c=self.robot.configuration(lengths + self.dt * rates))
+            moved = self.robot.points(after.c) - model
+            status = self._status(goal - tip - moved[-1], moved)
         report = Report(
-            status=self._status(goal - seen.tip - moved[-1], moved),
+            status=status,
             solve_time=perf_counter() - began,
             step_fraction=1.0,
             points=model + moved,
@@ -193,10 +195,12 @@ class DampedLeastSquares:
         rates = rates * speed_share(self.robot, rates)
         return attainable(self.robot, lengths, rates, self.dt)
 
-    def _seen(self, c: Array, measured: Measurement | None) -> Observed:
+    def _seen(self, c: Array, model: Array, measured: Measurement | None) -> tuple[Array, Array]:
+        """Tip (3,) and body points (S, 3) [m], those of the model where nothing is measured."""
         if measured is None:
-            return Observed(c=c, tip=self.robot.tip(c), points=np.zeros((0, 3)))
-        return observe(self.robot, measured, (c,), self.dt)
+            return model[-1], model
+        seen = observe(self.robot, measured, (c,), self.dt)
+        return seen.tip, seen.points if seen.has_shape else model
 
     def _status(self, error: Array, moved: Array) -> Status:
         if np.linalg.norm(error) < ARRIVED:
@@ -215,3 +219,14 @@ class DampedLeastSquares:
             zone=self.zone,
         )
         return state, Command(rates=np.zeros(len(self.robot.actuator_names)), report=report)
+
+
+def _fault(state: DLSState, goal: Array, measured: Measurement | None) -> str:
+    """What cannot be computed with, in words; empty if all is well."""
+    if goal.shape != (3,) or not np.all(np.isfinite(goal)):
+        return "the target is not three finite numbers"
+    if not np.all(np.isfinite(state.c)):
+        return "the state is not finite"
+    if measured is not None and not is_finite(measured):
+        return "the measurement is not finite"
+    return ""

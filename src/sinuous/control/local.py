@@ -17,8 +17,9 @@ class LocalController:
     K_loc = k_EE J+ D_EE + k_body (I - J+ J) g  (21), with J+ damped (23) and g the descent
     direction of the mean squared distance of the disks (26), (27).  As printed, k_body has no
     scale of its own: the same number is sluggish for one robot and unstable for another.  Here
-    g is divided by the largest curvature of (26), so that both gains are rates of decay: that
-    of the tip's error, and that of the body's in its stiffest direction.
+    g is divided by the largest curvature of (26) that the tip leaves free, so that both gains
+    are rates of decay: that of the tip's error, and that of the body's in its stiffest direction
+    beside it.
 
     Jacobians are analytic and in actuator coordinates, J_c L+, so what comes out keeps the
     coupling rules (19).
@@ -34,7 +35,7 @@ class LocalController:
     """
 
     tip_gain: float = 15.0
-    body_gain: float = 30.0
+    body_gain: float = 15.0
     damping: float = 1.0
     share: float = 0.2
 
@@ -63,8 +64,9 @@ class LocalController:
         if seen.has_shape:
             disks = robot.disk_indices[robot.disk_indices != len(goal) - 1]
             body, error = jacobian[disks], (goal - seen.points)[disks]
-            curvature = np.einsum("sdi,sdj->ij", body, body)
-            stiffest = float(np.linalg.eigvalsh(curvature)[-1])
+            free = np.eye(len(v)) - inverse @ J
+            moved = (body @ free).reshape(-1, len(v))
+            stiffest = float(np.linalg.eigvalsh(moved.T @ moved)[-1])
             g = np.einsum("sdi,sd->i", body, error) / stiffest
-            v += min(self.body_gain, fastest) * (g - inverse @ (J @ g))
+            v += min(self.body_gain, fastest) * free @ g
         return robot.lengths_jacobian(seen.c) @ to_actuators @ v

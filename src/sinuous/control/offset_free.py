@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from enum import Enum
 from math import exp
 
+import numpy as np
+
 from sinuous.arrays import Array
 
 
@@ -27,20 +29,28 @@ class OffsetFree:
     target moves.  The real body is as far from the nominal one as the model is wrong, at the tip
     by |d|, so it keeps at least the margin less the largest offset of any of its points.
 
+    Where the robot does not follow at all, a cable being slack or a wall in its way, the offset
+    grows as far as the plan is sent aside, and the plan is sent aside as far as the offset grows.
+    A limit ends that.
+
     Arguments:
         time_constant: of the lag [s]
+        limit: largest length of the estimate [m]
         when: see `When`
 
     Raises:
-        ValueError: if the time constant is not positive
+        ValueError: if the time constant or the limit is not positive
     """
 
     time_constant: float = 0.5
+    limit: float = 0.015
     when: When = When.TIP_ONLY
 
     def __post_init__(self) -> None:
         if not self.time_constant > 0.0:
             raise ValueError(f"time_constant must be positive, not {self.time_constant}")
+        if not self.limit > 0.0:
+            raise ValueError(f"limit must be positive, not {self.limit}")
 
     def applies(self, *, has_shape: bool) -> bool:
         """Whether an offset is learned from a measurement with or without the whole shape."""
@@ -48,4 +58,5 @@ class OffsetFree:
 
     def updated(self, offset: Array, seen: Array, dt: float) -> Array:
         """The estimate (3,) [m] after a time dt [s] in which the offset seen was (3,) [m]."""
-        return offset + (1.0 - exp(-dt / self.time_constant)) * (seen - offset)
+        offset = offset + (1.0 - exp(-dt / self.time_constant)) * (seen - offset)
+        return offset * min(1.0, self.limit / max(float(np.linalg.norm(offset)), self.limit))

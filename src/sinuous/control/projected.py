@@ -28,21 +28,23 @@ ENOUGH = 1e-7
 def projected(zone: SafeZone, p: Array, distance: float) -> Array:
     """A place (3,) [m] near p (3,) [m] that has a distance [m] from every wall.
 
-    From p, or from the nearest point of the wall if p is outside, it goes inward until the
+    It goes inward from p, or from the nearest point of the wall if p is outside, until the
     distance is enough, once for each wall that is too close. Beside a single smooth wall this
     is the nearest such place. In corners it is one of the places near the nearest one, and where
-    the zone is too narrow for the distance it is the roomiest place found on the way.
+    the zone is too narrow for the distance it is about the roomiest place.
     """
-    best, room = p, -np.inf
+    near, share = zone.nearest(p), 1.0
     for _ in range(ROUNDS):
-        near = zone.nearest(p)
-        clearance = float(near.clearance)
-        if clearance > room:
-            best, room = p, clearance
-        if clearance >= distance:
+        missing = distance - float(near.clearance)
+        if missing <= 0.0:
             break
-        p = p + (distance + ENOUGH - clearance) * near.gradient
-    return best
+        further = p + share * (missing + ENOUGH) * near.gradient
+        there = zone.nearest(further)
+        # Between two walls that are too near each other the whole way leads to the other one.
+        share = 1.0 if there.clearance > near.clearance else 0.5 * share
+        if there.clearance > near.clearance - ENOUGH:
+            p, near = further, there
+    return p
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,8 +27,9 @@ def attainable(robot: Robot, lengths: Array, rates: Array, dt: float) -> Array:
     low, high = np.minimum(low, lengths), np.maximum(high, lengths)
     for _ in range(ROUNDS):
         asked = robot.lengths(c)
-        allowed = np.clip(asked, low, high)
-        c = _unbent(robot, robot.configuration(allowed) if np.any(allowed != asked) else c, now)
+        if np.all((asked >= low) & (asked <= high)) and np.all(robot.bend_slack(c) >= 0.0):
+            break
+        c = _unbent(robot, robot.configuration(np.clip(asked, low, high)), now)
     change = (robot.lengths(c) - robot.lengths(now)) / dt
     return change * speed_share(robot, change)
 
@@ -44,8 +45,6 @@ def speed_share(robot: Robot, rates: Array, base: Array | float = 0.0) -> float:
 
 def _unbent(robot: Robot, c: Array, now: Array) -> Array:
     """The configuration with no segment bent beyond its limit, or farther beyond than it is now."""
-    if np.all(robot.bend_slack(c) >= 0.0):
-        return c
     theta, slope, offset, pitch = robot.bend_limits
     excess = np.maximum(-robot.bend_slack(now) / pitch, 0.0)
     c = c.copy()

@@ -10,14 +10,16 @@ curvature, because a backbone that neither twists nor shears needs no more.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from sinuous.arrays import Array, IntArray
+from sinuous.plants import shape_kernels
 from sinuous.robots.centreline import HINGE, Bends, Centreline
 
 # Gauss-Newton ends when the coil moves less than this [m], far below any tracker's noise.
 CONVERGED = 1e-7
 ITERATIONS = 50
+# Of the curvature of a segment along each axis: all others together have 0.03 % of the variance.
+MODES = 10
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,9 +100,13 @@ class ShapeEstimate:
 class ShapeEstimator:
     """Maximum a posteriori by Gauss-Newton: the prior's mean is the model's shape.
 
-    With x the deviation, K its prior covariance, h(x) what sensors should say, H = dh/dx and
-    R their covariance, every iteration goes towards x = K H' (H K H' + R)^-1 (y - h + H x), all
-    the way as long as that converges. At the end the covariance is K - K H' (H K H' + R)^-1 H K.
+    The prior is written as deviation = modes * std * z, with z normal and independent: the modes
+    are those of the Matern process with the largest variances. With h(z) what sensors should say,
+    over the standard deviation of each, and H = dh/dz, every iteration goes along
+
+        (I + H'H)^-1 (H' (y - h) - z),
+
+    all the way as long as that converges, and (I + H'H)^-1 is the covariance of z at the end.
 
     Arguments:
         line: the robot's centre line, with the tracker's coil
@@ -110,108 +116,83 @@ class ShapeEstimator:
     def __init__(self, line: Centreline, prior: ShapePrior) -> None:
         self._line, self._prior = line, prior
         self._bending = np.flatnonzero(line.bends)
-        section, middle = line.section[self._bending], line.middle[self._bending]
-        apart = np.sqrt(3.0) * np.abs(middle[:, None] - middle) / prior.correlation
-        alike = (1.0 + apart) * np.exp(-apart)
-        self._alike = np.where(section[:, None] == section, alike, 0.0)
+        section = line.section[self._bending]
+        owners, columns = list[int](), list[Array]()
+        for one in np.unique(section):
+            own = np.flatnonzero(section == one)
+            for mode in _modes(line.middle[self._bending[own]], prior.correlation):
+                for axis in range(2):
+                    column = np.zeros(line.coordinates)
+                    column[HINGE + 2 * own + axis] = mode
+                    owners.append(int(self._bending[own[0]]))
+                    columns.append(column)
+        tilts = np.eye(HINGE, line.coordinates)
+        self._modes = np.concatenate([tilts, np.array(columns)]).T.copy()
+        self._owner = np.array(owners)  # an arc of the mode's segment
 
     def estimate(
         self, lengths: Array, *, strain: Strain | None = None, tip: TipFix | None = None
     ) -> ShapeEstimate:
         """The shape (S, 3), given actuator lengths (P,) [m] and what sensors say."""
         model = self._line.model(self._line.robot.configuration(lengths))
-        K, sensors = self._prior_covariance(model), _Sensors(strain=strain, tip=tip)
-        x, moved, iterations, way = np.zeros(len(K)), np.inf, 0, 1.0
-        read = self._read(sensors, model, x)
+        bases = self._modes * self._deviation(model)
+        z, step = np.zeros(bases.shape[1]), np.empty(bases.shape[1])
+        L, bends, moved, iterations, way = np.empty((len(z), len(z))), model, np.inf, 0, 1.0
+        points, jacobian = self._line.points_with_jacobian(model)
         while moved > CONVERGED and iterations < ITERATIONS:
-            H = read.slope
-            KH = K @ H.T
-            factor = cholesky(H @ KH + np.diag(read.variance), lower=True)
-            goal = KH @ cho_solve((factor, True), read.left + H @ x)
-            x, coil, last = x + way * (goal - x), read.points[-1], moved
-            read = self._read(sensors, self._bent(model, x), x)
-            moved, iterations = float(np.max(np.abs(read.points[-1] - coil))), iterations + 1
+            shape_kernels.newton(*self._readings(bends, points, jacobian, bases, strain, tip),
+                                 z, L, step)  # fmt: skip
+            z, coil, last = z + way * step, points[-1], moved
+            bends = self._bent(model, bases @ z)
+            points, jacobian = self._line.points_with_jacobian(bends)
+            moved, iterations = float(np.max(np.abs(points[-1] - coil))), iterations + 1
             way *= 0.5 if moved > 0.5 * last else 1.0
+        covariance = np.empty((len(points) - 1, 3, 3))
+        shape_kernels.covariance(L, np.matmul(jacobian[:-1], bases), covariance)
         return ShapeEstimate(
-            points=read.points[:-1],
-            covariance=_covariance(read, K),
-            bends=self._bent(model, x),
+            points=points[:-1],
+            covariance=covariance,
+            bends=bends,
             iterations=iterations,
             converged=moved <= CONVERGED,
         )
 
-    def _prior_covariance(self, model: Bends) -> Array:
-        """Of the tilt and of the curvatures, in the order of the centre line's coordinates."""
-        bent = np.hypot(*model.curvature[self._bending].T)
-        std = np.hypot(self._prior.floor, self._prior.share * bent)
-        K = np.zeros((self._line.coordinates, self._line.coordinates))
-        K[:HINGE, :HINGE] = self._prior.tilt**2 * np.eye(HINGE)
-        for axis in range(2):
-            rows = slice(HINGE + axis, None, 2)
-            K[rows, rows] = std[:, None] * std * self._alike
-        return K
+    def _deviation(self, model: Bends) -> Array:
+        """Standard deviation of every mode (r,): tilts [rad], then curvatures [1/m]."""
+        bent = np.hypot(*model.curvature[self._owner].T)
+        curvature = np.hypot(self._prior.floor, self._prior.share * bent)
+        return np.concatenate([np.full(HINGE, self._prior.tilt), curvature])
 
     def _bent(self, model: Bends, x: Array) -> Bends:
         curvature = model.curvature.copy()
         curvature[self._bending] += x[HINGE:].reshape(-1, 2)
         return Bends(lengths=model.lengths, curvature=curvature, tilt=model.tilt + x[:HINGE])
 
-    def _read(self, sensors: "_Sensors", bends: Bends, x: Array) -> "_Linear":
-        """What sensors should say of a shape that is the deviation x (n,) away from the model."""
-        points, jacobian = self._line.points_with_jacobian(bends)
-        slope, left, variance = [np.zeros((0, len(x)))], [np.zeros(0)], [np.zeros(0)]
-        if sensors.strain is not None:
-            strain = sensors.strain
+    def _readings(
+        self,
+        bends: Bends,
+        points: Array,
+        jacobian: Array,
+        bases: Array,
+        strain: Strain | None,
+        tip: TipFix | None,
+    ) -> tuple[Array, Array]:
+        """Derivative H (m, r) of what is read and what is left of it (m,), over its deviation."""
+        H, left = [np.zeros((0, bases.shape[1]))], [np.zeros(0)]
+        if strain is not None:
             column = HINGE + 2 * np.searchsorted(self._bending, strain.arcs)
-            slope.append(np.eye(len(x))[(column[:, None] + np.arange(2)).ravel()])
-            left.append((strain.curvature - bends.curvature[strain.arcs]).ravel())
-            variance.append(strain.variance.ravel())
-        if sensors.tip is not None:
-            slope.append(jacobian[-1])
-            left.append(sensors.tip.position - points[-1])
-            variance.append(np.full(3, sensors.tip.variance))
-        return _Linear(
-            points=points,
-            jacobian=jacobian,
-            slope=np.concatenate(slope),
-            left=np.concatenate(left),
-            variance=np.concatenate(variance),
-        )
+            std = np.sqrt(strain.variance).ravel()
+            H.append(bases[(column[:, None] + np.arange(2)).ravel()] / std[:, None])
+            left.append((strain.curvature - bends.curvature[strain.arcs]).ravel() / std)
+        if tip is not None:
+            std = np.sqrt(tip.variance)
+            H.append(jacobian[-1] @ bases / std)
+            left.append((tip.position - points[-1]) / std)
+        return np.concatenate(H), np.concatenate(left)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Sensors:
-    """What there is of them."""
-
-    strain: Strain | None
-    tip: TipFix | None
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Linear:
-    """A shape and what m readings say of it, to first order.
-
-    Arguments:
-        points: guarded points and coil (S + 1, 3) [m]
-        jacobian: their derivative (S + 1, 3, n)
-        slope: derivative of what should be read (m, n)
-        left: what is read less what should be (m,)
-        variance: of the readings (m,)
-    """
-
-    points: Array
-    jacobian: Array
-    slope: Array
-    left: Array
-    variance: Array
-
-
-def _covariance(read: _Linear, K: Array) -> Array:
-    """Covariance (S, 3, 3) [m^2] of the guarded points after the readings, K (n, n) before."""
-    jacobian, H = read.jacobian[:-1], read.slope
-    count, _, n = jacobian.shape
-    rows = jacobian.reshape(-1, n) @ K
-    factor = cholesky(H @ K @ H.T + np.diag(read.variance), lower=True)
-    known = solve_triangular(factor, H @ rows.T, lower=True).T.reshape(count, 3, -1)
-    prior = rows.reshape(count, 3, n) @ jacobian.transpose(0, 2, 1)
-    return prior - known @ known.transpose(0, 2, 1)
+def _modes(places: Array, correlation: float) -> Array:
+    """The largest modes (MODES, K) of a Matern process (3/2) of unit variance at places (K,)."""
+    apart = np.sqrt(3.0) * np.abs(places[:, None] - places) / correlation
+    values, vectors = np.linalg.eigh((1.0 + apart) * np.exp(-apart))
+    return (vectors * np.sqrt(np.maximum(values, 0.0))).T[::-1][:MODES]

@@ -9,7 +9,7 @@ from pydantic import Field
 from sinuous.control.dls import DampedLeastSquares
 from sinuous.control.local import LocalController
 from sinuous.control.offset_free import OffsetFree, When
-from sinuous.files import Decay, Duration, FieldError
+from sinuous.files import Decay, Duration, FieldError, Length
 
 _NotNegative = Field(ge=0.0)
 _Positive = Field(gt=0.0)
@@ -52,6 +52,7 @@ class OffsetFreeTable:
 
     when: OffsetChoice = OffsetChoice.TIP_ONLY
     time_constant: Annotated[Duration, _Positive] = OffsetFree.time_constant
+    limit: Annotated[Length, _Positive] = OffsetFree.limit  # of the offset
 
 
 @dataclass(frozen=True, kw_only=True)

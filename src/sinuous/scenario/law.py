@@ -93,5 +93,7 @@ def _unprojected(table: ControlTable, *, seen: bool) -> Feedback | Reference | N
     )
     return Feedback(
         local=gains if local.enabled else None,
-        offset_free=OffsetFree(time_constant=offset.time_constant, when=offset.when.when),
+        offset_free=OffsetFree(
+            time_constant=offset.time_constant, limit=offset.limit, when=offset.when.when
+        ),
     )
