@@ -61,6 +61,7 @@ class DlsTable:
 
     gain: Annotated[float, Field(gt=0.0, le=1.0)] = DampedLeastSquares.gain
     damping: Annotated[float, _Positive] = DampedLeastSquares.damping
+    penalty: Annotated[float, _NotNegative] = DampedLeastSquares.penalty
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -35,11 +35,12 @@ class Reference:
     """The reference controller in the plan's stead: `DampedLeastSquares`.
 
     Arguments:
-        gain, damping: k_j and c_w of (30)
+        gain, damping, penalty: k_j, c_w and dh/du by dh/dx of (30)
     """
 
     gain: float
     damping: float
+    penalty: float
 
     def __call__(self, mpc: ShapeConstrainedMPC) -> Controller[Any]:
         """The controller for the same robot, zone, margin and rate."""
@@ -50,6 +51,7 @@ class Reference:
             dt=mpc.dt,
             gain=self.gain,
             damping=self.damping,
+            penalty=self.penalty,
         )
 
 
@@ -81,7 +83,7 @@ def law_of(table: ControlTable, *, seen: bool) -> Feedback | Reference | Project
 
 def _unprojected(table: ControlTable, *, seen: bool) -> Feedback | Reference | None:
     if table.law is LawChoice.DLS:
-        return Reference(gain=table.dls.gain, damping=table.dls.damping)
+        return Reference(gain=table.dls.gain, damping=table.dls.damping, penalty=table.dls.penalty)
     if not seen and table.local is None and table.offset_free is None:
         return None
     local, offset = table.local or LocalTable(), table.offset_free or OffsetFreeTable()

@@ -82,6 +82,8 @@ def respond(item: Item) -> dict[str, Any]:
         "local_error_at_rest_m": float(np.mean(curves["local_m"][last])),
         "body_error_at_rest_m": float(np.mean(curves["body_m"][last])),
         "settling_time_s": settling_time(error, recording.header.dt, at_rest),
+        "local_error_before_draws_m": float(np.mean(before_draws(base, curves["local_m"])[1:])),
+        "approach_linearity": linearity(curves["nominal_m"]) if "MPC" in name else None,
         "clipped_fraction": float(np.mean(recording.clipped > 1e-3)),
         "curves": {key: value.tolist() for key, value in curves.items()} if shown else None,
     }
@@ -103,6 +105,24 @@ def response(recording: Recording) -> dict[str, Array]:
         "nominal_input_m_s": np.linalg.norm(nominal_rates, axis=1),
         "local_input_m_s": np.linalg.norm(recording.local_rates, axis=1),
     }
+
+
+def before_draws(base: Scenario, values: Array) -> Array:
+    """Values (K,) in the last step before each draw of the disturbance."""
+    assert base.disturbance is not None
+    period = round(1.0 / (base.disturbance.rate * base.mpc.dt))
+    return values[period - 1 :: period]
+
+
+def linearity(error: Array) -> float | None:
+    """How straight the error (K,) falls until a tenth of it is left: R^2 of a line, None if the
+    way takes fewer than four steps."""
+    way = error[: int(np.argmax(error <= LEFT * error[0]))]
+    if len(way) < 4:
+        return None
+    time = np.arange(len(way))
+    rest = way - np.polyval(np.polyfit(time, way, 1), time)
+    return float(1.0 - np.var(rest) / np.var(way))
 
 
 def settling_time(error: Array, dt: float, at_rest: float) -> float | None:

@@ -1,7 +1,11 @@
 """Gains of the reference controller, as changes of a scenario."""
 
-DLS_PRINTED = ("control.law=dls",)
-"""k_j = 0.05 and c_w = 1, III-A."""
+from sinuous.papers.hachen2025.undisturbed import BEST, PRINTED, Gains
 
-DLS_BEST = ("control.law=dls", "control.dls.gain=0.2", "control.dls.damping=1")
-"""The best that the search of `stability` found."""
+
+def _changes(gains: Gains) -> tuple[str, ...]:
+    return ("control.law=dls", *(f"control.dls.{k}={v}" for k, v in gains.plain().items()))
+
+
+DLS_PRINTED = _changes(PRINTED)
+DLS_BEST = _changes(BEST)

@@ -41,7 +41,7 @@ PRINTED = Gains(gain=0.05, damping=1.0, penalty=DT)
 STIFF = Gains(gain=0.05, damping=1.0, penalty=1.0)
 """III-A, with dh/du = dh/dx: u is what the actuators move by in a step."""
 
-BEST = Gains(gain=0.2, damping=0.1, penalty=1.0)
+BEST = Gains(gain=0.5, damping=1.0, penalty=10.0)
 """What the search of `stability` finds."""
 
 MPC = "MPC"
@@ -74,7 +74,13 @@ class Place:
             return ShapeConstrainedMPC(self.robot, self.zone, margin=self.margin, dt=DT)
         gains = law if isinstance(law, Gains) else DLS[law]
         return DampedLeastSquares(
-            self.robot, self.zone, margin=self.margin, dt=DT, **gains.plain()
+            self.robot,
+            self.zone,
+            margin=self.margin,
+            dt=DT,
+            gain=gains.gain,
+            damping=gains.damping,
+            penalty=gains.penalty,
         )
 
 
@@ -87,7 +93,7 @@ def place(name: str) -> Place:
     base = scenario(name)
     assert isinstance(base.robot, PccRobot)
     start = base.first_configuration
-    return Place(robot=base.robot, zone=base.zone, start=start, margin=base.controller.margin)
+    return Place(robot=base.robot, zone=base.zone, start=start, margin=base.mpc.margin)
 
 
 def drive(controller: Controller[Any], c: Array, targets: Array) -> Array:

@@ -82,6 +82,13 @@ def drive(item: Item) -> dict[str, Any]:
         "time_at_waypoints_s": (dt * (ends + 1)).tolist(),
         "nominal_error_at_waypoints_m": at(ends, recording.nominal_tip, recording),
         "actual_error_at_waypoints_m": at(ends, recording.actual_tip, recording),
+        "fastest_actuator": float(
+            np.max(np.abs(recording.rates) / recording.header.rate_limits[:, 1])
+        ),
+        "fastest_tip_m_s": float(
+            np.max(np.linalg.norm(np.diff(recording.nominal_tip, axis=0), axis=1)) / dt
+        ),
+        "tip_speed_limit_m_s": found.mpc.tip_speed,
         "bend_at_the_end_rad": float(bend(found.robot.bend_limits[0], recording)),
         "clearance_m": None if disturbed else recording.actual_clearance.round(6).tolist(),
         "time_s": None if disturbed else recording.time.round(6).tolist(),
