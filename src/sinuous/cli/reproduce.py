@@ -24,6 +24,7 @@ def reproduce(arguments: Reproduce) -> int:
     from sinuous.papers import reproduce as papers
     from sinuous.papers.experiment import Experiment
     from sinuous.papers.hachen2025.paper import HACHEN2025
+    from sinuous.papers.workers import ignore
 
     _check(arguments, [one.name for one in HACHEN2025.experiments])
     console, out = Console(), Path(arguments.out)
@@ -38,7 +39,8 @@ def reproduce(arguments: Reproduce) -> int:
             only=arguments.only,
             quick=arguments.quick,
             processes=arguments.processes or os.cpu_count() or 1,
-            observe=progress.observe,
+            # Without a terminal a line for each experiment is enough.
+            observe=progress.observe if console.is_terminal else ignore,
             finished=finished,
         )
     _print_claims(console, done.claims)

@@ -34,7 +34,7 @@ class LocalController:
         ValueError: if a gain or the damping is negative, or the share not within 0 and 1
     """
 
-    tip_gain: float = 15.0
+    tip_gain: float = 30.0
     body_gain: float = 15.0
     damping: float = 1.0
     share: float = 0.2

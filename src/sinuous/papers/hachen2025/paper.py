@@ -1,6 +1,13 @@
 """Paper B: what `sinuous reproduce hachen2025` runs."""
 
+from sinuous.papers.hachen2025.claims import CLAIMS
 from sinuous.papers.hachen2025.convergence import CONVERGENCE
+from sinuous.papers.hachen2025.hardware import HARDWARE
+from sinuous.papers.hachen2025.printed import PRINTED_READINGS
+from sinuous.papers.hachen2025.shape_sensing import SHAPE_SENSING
+from sinuous.papers.hachen2025.stability import STABILITY
+from sinuous.papers.hachen2025.tuning import TUNING
+from sinuous.papers.hachen2025.unreachable import UNREACHABLE
 from sinuous.papers.hachen2025.waypoints import WAYPOINTS
 from sinuous.papers.reproduce import Paper
 
@@ -8,6 +15,15 @@ HACHEN2025 = Paper(
     name="hachen2025",
     title="M. Hachen, C. Shentu, S. Lilge, J. Burgner-Kahrs: A Non-Linear Model Predictive "
     "Task-Space Controller Satisfying Shape Constraints for Tendon-Driven Continuum Robots (2025)",
-    experiments=(CONVERGENCE, WAYPOINTS),
-    claims=(),
+    experiments=(
+        PRINTED_READINGS,
+        TUNING,
+        CONVERGENCE,
+        WAYPOINTS,
+        STABILITY,
+        UNREACHABLE,
+        HARDWARE,
+        SHAPE_SENSING,
+    ),
+    claims=CLAIMS,
 )
