@@ -12,6 +12,8 @@ from sinuous.plants.shape_estimate import ShapeEstimator, ShapePrior, Strain, Ti
 from sinuous.robots.centreline import Centreline
 from sinuous.robots.robot import Robot
 
+# No tracker is trusted more than this [m]: an exact one would leave the estimate no freedom.
+FINEST = 1e-5
 # Distinguishes the fibre's random numbers from those of its tracker with the same seed.
 STREAM = 3
 
@@ -82,7 +84,8 @@ class ShapeSensing:
         if len(plant.truth.curvature) != len(line.section):
             raise ValueError("a fibre needs a plant that knows the curvature of its centre line")
         estimator, reader = ShapeEstimator(line, self.prior), FibreReader(self.fibre, line, seed)
-        track, variance = self.tracker.reader(seed), self.tracker.accuracy.variance
+        track = self.tracker.reader(seed)
+        variance = max(self.tracker.accuracy.variance, FINEST**2)
 
         def read(truth: Truth) -> Measurement:
             tip = TipFix(position=track(truth).tip, variance=variance)
