@@ -5,6 +5,7 @@ import numpy as np
 from sinuous.control.mpc import ShapeConstrainedMPC
 from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
+from sinuous.plants.fibre import ShapeSensing
 from sinuous.plants.kinematic import KinematicPlant
 from sinuous.robots.robot_file import load_robot
 
@@ -20,7 +21,8 @@ def precompile() -> None:
         state = mpc.init(robot.home)
         into_the_wall = robot.tip(robot.home) + np.array([2.0 * RADIUS, 0.0, 0.0])
         _, command = mpc.step(state, target=into_the_wall)
-        KinematicPlant(robot, seed=0).step(command.rates, DT)
+        plant = ShapeSensing(robot=robot).on(KinematicPlant(robot, seed=0), 0)
+        plant.step(command.rates, DT)
 
 
 def _tube() -> SafeZone:
