@@ -8,6 +8,7 @@ import pytest
 
 import sinuous as sn
 from sinuous.arrays import Array
+from sinuous.cli import main
 from sinuous.control.dls import DampedLeastSquares
 from sinuous.control.hierarchical import HierarchicalController
 from sinuous.control.local import LocalController
@@ -205,3 +206,14 @@ def test_what_is_wrong_is_said_in_the_words_of_the_file(
         load(*changes)
     for word in words:
         assert word in str(error.value)
+
+
+def test_check_says_what_runs_and_what_is_seen(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = FREE.read_text() + '\n[plant.mismatch]\nsag_mm = 2\n[sensor]\nkind = "fibre"\n'
+    (tmp_path / "seen.toml").write_text(text)
+    assert main(["check", str(tmp_path / "seen.toml")]) == 0
+    said = "".join(capsys.readouterr().out.split())
+    for words in ("Feedback(", "Mismatch(", "sag=0.002", "ShapeSensing("):
+        assert words in said

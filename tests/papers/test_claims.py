@@ -128,6 +128,19 @@ def as_the_paper_says() -> Data:
                  "tip_jump_in_window_m": 0.001},
             ],
         },
+        "timing": {
+            "rows": [
+                {
+                    "controller": "sinuous",
+                    "constrained": walls,
+                    "horizon": N,
+                    "mean_s": 0.002,
+                    "p99_s": 0.01 if N <= 2 else 0.04,
+                }
+                for walls in (False, True)
+                for N in range(1, 7)
+            ]
+        },
         "hardware": {
             "rows": [
                 held(test, name)
@@ -207,6 +220,15 @@ FLIPS: dict[str, list[Callable[[Data], None]]] = {
     "limits_are_kept": [
         put(1.001, "waypoints", "rows", 0, "fastest_actuator"),
         put(0.061, "waypoints", "rows", 0, "fastest_tip_m_s"),
+    ],
+    "mean_time": [put(0.031, "timing", "rows", 7, "mean_s")],
+    "time_bounds": [
+        put(0.1, "timing", "rows", 4, "mean_s"),
+        put(0.1, "timing", "rows", 8, "mean_s"),
+    ],
+    "two_is_the_limit": [
+        put(0.03, "timing", "rows", 8, "p99_s"),
+        put(0.04, "timing", "rows", 7, "p99_s"),
     ],
     "nominal_reaches_its_goals": [
         put([1e-6, 0.01], "hardware", "rows", 0, "nominal_error_at_goals_m")

@@ -47,7 +47,8 @@ def quick() -> Any:
 
 def test_plate_is_a_solid_with_one_hole() -> None:
     mesh = plate(PLATE, HOLE, HOLE_RADIUS)
-    assert mesh.is_watertight and mesh.is_winding_consistent
+    assert mesh.is_watertight
+    assert mesh.is_winding_consistent
     assert mesh.euler_number == 0  # a torus
     area = np.pi * ((RADIUS + 1e-3) ** 2 - HOLE_RADIUS**2)
     assert mesh.volume == pytest.approx(area * THICKNESS, rel=FACETED)
@@ -64,7 +65,8 @@ def test_hole_is_open_and_the_plate_is_not(scene: DeadEnd) -> None:
 @pytest.mark.parametrize("number", [0, 1])
 def test_scenes_start_safe_repeat_and_leave_room(make: Any, number: int) -> None:
     one, again = make(SEED, number, 3), make(SEED, number, 3)
-    assert np.array_equal(one.targets, again.targets) and len(one.targets) == 3
+    assert np.array_equal(one.targets, again.targets)
+    assert len(one.targets) == 3
     assert not np.array_equal(one.targets, make(SEED, number + 2, 3).targets)
     assert np.min(one.controller(2, DT).slack(one.start)) >= 0.0
     room = one.zone.clearance(one.targets) - one.robot.radii[-1] - one.margin
@@ -112,7 +114,8 @@ def test_settling_sees_motion_and_rest(scene: DeadEnd) -> None:
     near = scene.robot.tip(scene.start) + [0.005, 0.0, 0.0]
     moved = settle(mpc, scene.start, near, 3.0)
     assert moved["settled_s"] > rest["settled_s"] or rest["settled_s"] == 0.0
-    assert moved["settled_s"] >= DT and moved["error_m"] <= 1e-5
+    assert moved["settled_s"] >= DT
+    assert moved["error_m"] <= 1e-5
 
 
 def made_up() -> dict[str, Any]:

@@ -104,7 +104,7 @@ def test_what_is_wrong_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str
     (tmp_path / "file").write_text("")
     for arguments, word in (
         (["--out", str(tmp_path / "file")], "a folder"),
-        (["--out", str(tmp_path), "--only", "nothing"], "one of printed"),
+        (["--out", str(tmp_path), "--only", "nothing"], "one of timing"),
         (["--out", str(tmp_path), "--processes", "0"], "one or more"),
     ):
         assert main(["reproduce", "hachen2025", *arguments]) == 2

@@ -1,5 +1,6 @@
 """What good files hold, as rows of a table; bad ones raise `InputError`."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -8,11 +9,12 @@ from sinuous.arrays import Array
 from sinuous.cli.table import Rows
 from sinuous.files import read_path_csv, read_toml
 from sinuous.geometry.mesh import check_mesh
+from sinuous.plants.plant import Plant
 from sinuous.recording import read
 from sinuous.robots.parts import Segment
 from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import load_robot
-from sinuous.scenario import load_scenario
+from sinuous.scenario import Scenario, load_scenario
 from sinuous.scenario.start import check_start
 from sinuous.summary import summarise
 from sinuous.view.summary_table import summary_rows
@@ -108,13 +110,27 @@ def scenario(path: Path, overrides: list[str]) -> Rows:
         ("zone", _zone(len(found.zone.triangles), len(found.zone.surfaces))),
         ("margin", f"{mpc.margin * MM_PER_M:g} mm"),
         ("least clearance at the start", _room(float(np.min(room, initial=np.inf)))),
-        ("controller", f"horizon {mpc.horizon}, every {mpc.dt * MS_PER_S:.4g} ms"),
+        ("plan", f"horizon {mpc.horizon}, every {mpc.dt * MS_PER_S:.4g} ms"),
+        ("controller", "the plan alone" if found.law is None else str(found.law)),
         ("path", f"{len(found.path)} legs, at most {steps} steps"),
         ("targets", "; ".join(millimetres(target) for target in targets)),
         ("clearance of the targets", "; ".join(map(_room, found.zone.clearance(targets)))),
-        ("disturbance", "none" if found.disturbance is None else str(found.disturbance)),
+        ("plant", _plant(found)),
+        ("sensor", "exact" if found.sensor is None else _instrument(found.sensor)),
         ("seed", str(found.seed)),
     ]
+
+
+def _plant(found: Scenario) -> str:
+    if found.plant is not None:
+        return "a record, played back"
+    differs = found.mismatch or found.disturbance
+    return "the model" if differs is None else str(differs)
+
+
+def _instrument(sensor: Callable[[Plant, int], Plant]) -> str:
+    """The instrument whose method wraps a plant."""
+    return str(getattr(sensor, "__self__", sensor))
 
 
 def _zone(triangles: int, surfaces: int) -> str:

@@ -51,13 +51,13 @@ class Problem:
         return replace(self, functions=functions)
 
 
-def make_problem(scene: Scene, wall: Wall, horizon: int) -> Problem:
-    """Write down the program for a scene."""
+def make_problem(scene: Scene, wall: Wall | None, horizon: int) -> Problem:
+    """Write down the program for a scene, without a wall for one that has none."""
     writer = _Writer.of(scene.robot, wall, horizon)
     robot, r = scene.robot, unit(scene.robot)
     _check_implied(robot)
     rates = robot.rate_limits * scene.dt / r
-    bends, disks = len(robot.segments), writer.stage.disks
+    bends, disks = len(robot.segments), 0 if wall is None else writer.stage.disks
     required = (robot.segments[0].body_radius + scene.margin) / r
     lower = np.concatenate([rates[:, 0], np.zeros(bends), np.full(disks, required)])
     upper = np.concatenate([rates[:, 1], np.full(bends + disks, np.inf)])
@@ -91,13 +91,13 @@ class _Writer:
     """Writes the functions of a program."""
 
     stage: Stage
-    wall: Wall
+    wall: Wall | None
     horizon: int
     X: ca.MX  # y of all stages (n, N)
     p: ca.MX
 
     @classmethod
-    def of(cls, robot: PccRobot, wall: Wall, horizon: int) -> Self:
+    def of(cls, robot: PccRobot, wall: Wall | None, horizon: int) -> Self:
         stage = Stage.of(robot)
         n = len(robot.coordinate_names)
         X, p = ca.MX.sym("x", n, horizon), ca.MX.sym("p", n + 3)
@@ -208,24 +208,28 @@ class _Writer:
         return ca.diagcat(*blocks) + weight_f * self._length_hessian()
 
     def _stage_hessian(self, rows: int, *, exact: bool) -> ca.Function:
-        n, disks = self.n, self.stage.disks
+        n = self.n
         y, weights = ca.MX.sym("y", n), ca.MX.sym("weights", rows)
         weight_f, target = ca.MX.sym("weight_f"), ca.MX.sym("target", 3)
         points, J = self.stage.first(y)
         tip = J[-3:, :]
         total = 2.0 * weight_f * tip.T @ tip
         if exact:
-            on_bend, on_disks = weights[: rows - disks], weights[rows - disks :]
-            gradient, second = self.wall.second.map(disks)(points)
-            force = gradient * ca.repmat(on_disks.T, 3, 1)
+            bends = len(self.stage.robot.segments)
+            on_bend, on_disks = weights[:bends], weights[bends:]
+            force = ca.MX(3, self.stage.disks)
+            if self.wall is not None:
+                gradient, second = self.wall.second.map(self.stage.disks)(points)
+                force = gradient * ca.repmat(on_disks.T, 3, 1)
+                walls = [
+                    on_disks[i] * (second[:, 3 * i : 3 * i + 3] @ J[3 * i : 3 * i + 3, :])
+                    for i in range(self.stage.disks)
+                ]
+                total += J.T @ ca.vertcat(*walls)
             pull = force[:, -1] + 2.0 * weight_f * (points[:, -1] - target)
             force = ca.horzcat(force[:, :-1], pull)
-            walls = [
-                on_disks[i] * (second[:, 3 * i : 3 * i + 3] @ J[3 * i : 3 * i + 3, :])
-                for i in range(disks)
-            ]
-            bends = ca.hessian(ca.dot(on_bend, self.stage.bend(y)), y)[0]
-            total += self.stage.curvature(y, force) + J.T @ ca.vertcat(*walls) + bends
+            total += self.stage.curvature(y, force)
+            total += ca.hessian(ca.dot(on_bend, self.stage.bend(y)), y)[0]
         name = "stage_exact" if exact else "stage_gauss_newton"
         return ca.Function(name, [y, weights, weight_f, target], [ca.densify(total)])
 

@@ -14,12 +14,17 @@ def nlp_for(
 ) -> Problem:
     """The program, in machine code where there is a C compiler and it is wanted.
 
+    A zone without walls leaves out the clearance, and what follows from it.
+
     Arguments:
         grid: spacing of the spline [m]
     """
-    spline = Spline.fit(scene.zone, spacing=grid, unit=unit(scene.robot))
     command = compiler() if machine_code else None
+    wall = None
+    if scene.zone.surfaces:
+        spline = Spline.fit(scene.zone, spacing=grid, unit=unit(scene.robot))
+        wall = Wall.interpreted(spline) if command is None else Wall.local(spline)
+    problem = make_problem(scene, wall, horizon)
     if command is None:
-        return make_problem(scene, Wall.interpreted(spline), horizon)
-    problem = make_problem(scene, Wall.local(spline), horizon)
+        return problem
     return problem.with_functions(compiled(problem.functions, command))

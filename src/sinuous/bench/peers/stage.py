@@ -67,12 +67,17 @@ class Stage:
             rows.append(reach**2 - ca.sumsqr(y[3 * j : 3 * j + 2]))
         return ca.vertcat(*rows)
 
-    def limits(self, wall: Wall, y: ca.MX) -> ca.MX:
-        """Bend and clearance (M + D,)."""
+    def limits(self, wall: Wall | None, y: ca.MX) -> ca.MX:
+        """Bend and clearance (M + D,); the bend alone where no wall is."""
+        if wall is None:
+            return self.bend(y)
         return ca.vertcat(self.bend(y), wall.value.map(self.disks)(self.positions(y)).T)
 
-    def limits_first(self, wall: Wall, y: ca.MX) -> tuple[ca.MX, ca.MX]:
+    def limits_first(self, wall: Wall | None, y: ca.MX) -> tuple[ca.MX, ca.MX]:
         """The same and their Jacobian."""
+        if wall is None:
+            bend = self.bend(y)
+            return bend, ca.densify(ca.jacobian(bend, y))
         points, J = self.first(y)
         clearance, gradient = wall.first.map(self.disks)(points)
         rows = [gradient[:, i].T @ J[3 * i : 3 * i + 3, :] for i in range(self.disks)]

@@ -3,9 +3,11 @@
 from sinuous.papers.hachen2025.claims import CLAIMS
 from sinuous.papers.hachen2025.convergence import CONVERGENCE
 from sinuous.papers.hachen2025.hardware import HARDWARE
+from sinuous.papers.hachen2025.horizons import HORIZONS_EXPERIMENT
 from sinuous.papers.hachen2025.printed import PRINTED_READINGS
 from sinuous.papers.hachen2025.shape_sensing import SHAPE_SENSING
 from sinuous.papers.hachen2025.stability import STABILITY
+from sinuous.papers.hachen2025.timing import TIMING
 from sinuous.papers.hachen2025.tuning import TUNING
 from sinuous.papers.hachen2025.unreachable import UNREACHABLE
 from sinuous.papers.hachen2025.waypoints import WAYPOINTS
@@ -16,6 +18,7 @@ HACHEN2025 = Paper(
     title="M. Hachen, C. Shentu, S. Lilge, J. Burgner-Kahrs: A Non-Linear Model Predictive "
     "Task-Space Controller Satisfying Shape Constraints for Tendon-Driven Continuum Robots (2025)",
     experiments=(
+        TIMING,  # first, while the other processes have nothing to do
         PRINTED_READINGS,
         TUNING,
         CONVERGENCE,
@@ -24,6 +27,7 @@ HACHEN2025 = Paper(
         UNREACHABLE,
         HARDWARE,
         SHAPE_SENSING,
+        HORIZONS_EXPERIMENT,
     ),
     claims=CLAIMS,
 )

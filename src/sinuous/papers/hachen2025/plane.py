@@ -13,7 +13,7 @@ from sinuous.view.solids import body
 from sinuous.view.style import GREEN, PALE, PALER, SLATE, rgb
 from sinuous.view.units import MM_PER_M
 
-X, Z = 0, 2
+X, Y, Z = range(3)
 TOWARDS = np.array([0.0, -1.0, 0.0])
 """From where one looks: x points to the right and z up."""
 

@@ -39,7 +39,7 @@ SECONDS_PER_METRE = 1e3
 
 GAINS = (0.05, 0.2, 0.5, 1.0)
 DAMPINGS = (0.01, 0.1, 1.0)
-PENALTIES = (DT, 10.0 * DT, 1.0, 3.0, 10.0)
+PENALTIES = (DT, 10.0 * DT, 1.0, 10.0)
 
 Item = tuple[str, Gains, int, float]
 

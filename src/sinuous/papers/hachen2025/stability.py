@@ -32,7 +32,7 @@ from sinuous.papers.workers import Workers
 SEED = 2025
 TARGETS = {"anywhere": 500, "at the edge": 250, "beyond the edge": 250, "in the tube": 100}
 QUICK_TARGETS = dict.fromkeys(TARGETS, 3)
-DURATION, QUICK_DURATION = 10.0, 4.0  # of a run [s]
+DURATION, QUICK_DURATION = 8.0, 4.0  # of a run [s]
 CHUNK = 20  # targets that a process does at once
 
 IN_FREE_SPACE = ("DLS, printed gains", "DLS, best gains", MPC)
