@@ -46,6 +46,8 @@ class SurfaceClearance:
         Clearance changes no faster than a point moves, so most points need no query: those
         next to them tell that they cannot be the closest ones. The result is exact.
         """
+        if not self.zone.surfaces:
+            return np.inf
         share = np.arange(1, SHAPES + 1)[:, None] / SHAPES
         points = self.robot.points(before + share * (after - before))[:, self.robot.movable]
         radii = self.robot.radii[self.robot.movable]

@@ -26,7 +26,7 @@ CONTROLLERS: dict[str, tuple[str, ...]] = {
 }
 """What is changed in the scenario for each."""
 
-TARGETS, DURATION, REST = 50, 12.0, 5.0  # how many, time of a run and of its end [s]
+TARGETS, DURATION, REST = 50, 10.0, 5.0  # how many, time of a run and of its end [s]
 QUICK_TARGETS, QUICK_DURATION, QUICK_REST = 2, 6.0, 2.0
 SEED = 2025  # of the targets; run k has the disturbances of seed k
 SHOWN_DISTANCE = 0.040  # of the printed figures' target from where the tip starts [m]

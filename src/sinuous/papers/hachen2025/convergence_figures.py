@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from sinuous.papers.experiment import Data
 from sinuous.view.curves import BENEATH
-from sinuous.view.style import BLUE, CYCLE, GREEN, GREY, ORANGE, SKY, TIME_LABEL, VERMILION, save
+from sinuous.view.style import BLACK, BLUE, CYCLE, GREEN, GREY, ORANGE, TIME_LABEL, VERMILION, save
 from sinuous.view.units import MM_PER_M
 
 ERRORS = (
@@ -97,4 +97,4 @@ def _dots(axes: Axes, k: int, values: np.ndarray, color: str) -> None:
     side = 0.28 * np.linspace(-1.0, 1.0, len(values)) if len(values) > 1 else np.zeros(len(values))
     axes.plot(k + side, values, linestyle="none", marker="o", markersize=3.5, color=color)
     if len(values):
-        axes.hlines(float(np.median(values)), k - 0.35, k + 0.35, color=SKY, linewidth=2.5)
+        axes.hlines(float(np.median(values)), k - 0.35, k + 0.35, color=BLACK, linewidth=2.0)
