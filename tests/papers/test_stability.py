@@ -10,7 +10,15 @@ from sinuous.arrays import Array
 from sinuous.papers.hachen2025.search import NEAR, settling_time
 from sinuous.papers.hachen2025.settling import END, OSCILLATING, end_of
 from sinuous.papers.hachen2025.stability import STABILITY, TARGETS, worst
-from sinuous.papers.hachen2025.targets import PUSHED, anywhere, at_the_edge, beyond, inside, outside
+from sinuous.papers.hachen2025.targets import (
+    PUSHED,
+    along,
+    anywhere,
+    at_the_edge,
+    beyond,
+    inside,
+    outside,
+)
 from sinuous.papers.hachen2025.undisturbed import (
     BEST,
     DT,
@@ -32,7 +40,7 @@ X = np.array([1.0, 0.0, 0.0])
 TIME = DT * np.arange(301)
 
 
-def along(values: Array) -> Array:
+def straight(values: Array) -> Array:
     """A path (K, 3) on a straight line."""
     return values[:, None] * X
 
@@ -41,20 +49,20 @@ def along(values: Array) -> Array:
 
 
 def test_a_tip_that_stands_still_rests() -> None:
-    end = end_of(along(np.full(301, 0.1)))
+    end = end_of(straight(np.full(301, 0.1)))
     assert (end.extent, end.path) == (0.0, 0.0)
     assert not end.moving
 
 
 def test_only_the_end_counts() -> None:
     begun = np.where(TIME[-1] - END - DT > TIME, np.sin(50.0 * TIME), 0.0)
-    assert not end_of(along(begun)).moving
+    assert not end_of(straight(begun)).moving
 
 
 @pytest.mark.parametrize("amplitude", [0.9, 1.1])
 def test_an_oscillation_is_one_from_half_a_millimetre_on(amplitude: float) -> None:
     wave = 0.5 * amplitude * OSCILLATING * np.sign(np.sin(40.0 * TIME))
-    end = end_of(along(wave))
+    end = end_of(straight(wave))
     assert end.extent == pytest.approx(amplitude * OSCILLATING)
     assert end.moving == end.to_and_fro == (amplitude > 1.0)
 
@@ -67,7 +75,7 @@ def test_the_diagonal_is_no_less_than_any_axis() -> None:
 
 
 def test_creeping_is_moving_but_not_to_and_fro() -> None:
-    end = end_of(along(0.01 * TIME))
+    end = end_of(straight(0.01 * TIME))
     assert end.extent == pytest.approx(end.path) == pytest.approx(0.01 * END)
     assert end.moving
     assert not end.to_and_fro
@@ -75,14 +83,14 @@ def test_creeping_is_moving_but_not_to_and_fro() -> None:
 
 def test_settling_is_staying() -> None:
     target = np.zeros(3)
-    decay = along(0.05 * np.exp(-2.0 * TIME))
+    decay = straight(0.05 * np.exp(-2.0 * TIME))
     assert settling_time(decay, target) == pytest.approx(0.5 * np.log(0.05 / NEAR), abs=DT)
     assert settling_time(0.0 * decay, target) == 0.0
     assert settling_time(decay + NEAR * X, target) is None  # does not get there
     back = decay.copy()
     back[200] = 2.0 * NEAR * X  # there, and away once more
     assert settling_time(back, target) == pytest.approx(201 * DT)
-    around = along(0.9 * NEAR * np.sign(np.sin(40.0 * TIME)))
+    around = straight(0.9 * NEAR * np.sign(np.sin(40.0 * TIME)))
     assert settling_time(around, target) is None  # within reach of it, but never at rest
 
 
@@ -109,6 +117,16 @@ def test_targets_in_and_beside_the_tube_are_where_they_should_be() -> None:
     clearance = zone.clearance(outside(zone, 0.01, 0.04, 50, rng))
     assert np.max(clearance) <= -0.01
     assert np.min(clearance) >= -0.04
+
+
+def test_targets_in_a_passage_are_ahead_of_the_robot() -> None:
+    here = place(TUBE)
+    base, needed = here.robot.T_w_b[:3, 3], here.robot.required_distance(here.margin)[-1]
+    targets = along(here, 40, np.random.default_rng(3))
+    assert len(targets) == 40
+    assert np.min(here.zone.clearance(targets)) >= needed
+    away = np.linalg.norm(targets - base, axis=1)
+    assert np.min(away) > np.linalg.norm(here.robot.tip(here.start) - base)
 
 
 # --- loops ------------------------------------------------------------------------------------
@@ -149,8 +167,8 @@ def test_an_exact_plant_makes_no_difference() -> None:
 def test_at_the_edge_a_stiff_penalty_goes_to_and_fro_where_the_mpc_rests() -> None:
     """The far end of the winding tube, which the robot barely reaches."""
     here = place(TUBE)
-    target = inside(here.zone, 0.012, 100, np.random.default_rng(2025))
-    far = target[np.argmax(np.linalg.norm(target - here.robot.T_w_b[:3, 3], axis=1))]
+    targets = along(here, 100, np.random.default_rng(2025))
+    far = targets[np.argmax(np.linalg.norm(targets - here.robot.T_w_b[:3, 3], axis=1))]
     ends = {
         law: end_of(tips(here.robot, drive(here.controller(law), here.start, held(far, 10.0))))
         for law in (STIFF, MPC)
@@ -162,7 +180,7 @@ def test_at_the_edge_a_stiff_penalty_goes_to_and_fro_where_the_mpc_rests() -> No
 # --- the experiment ---------------------------------------------------------------------------
 
 
-def test_the_worst_case_is_the_longest_way_to_and_fro() -> None:
+def test_the_worst_case_turns_back_most() -> None:
     def row(law: str, extent: float, path: float) -> dict[str, object]:
         return {"controller": law, "extent_m": extent, "path_m": path}
 

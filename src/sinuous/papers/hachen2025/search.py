@@ -14,7 +14,7 @@ import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.papers.hachen2025.settling import end_of
-from sinuous.papers.hachen2025.targets import anywhere, inside
+from sinuous.papers.hachen2025.targets import along, anywhere
 from sinuous.papers.hachen2025.undisturbed import (
     BEST,
     DT,
@@ -91,8 +91,7 @@ def training(name: str, count: int) -> Array:
     here, rng = place(name), np.random.default_rng(SEED)
     if name == FREE:
         return anywhere(here.robot, count, rng)
-    distance = float(here.robot.required_distance(here.margin)[-1])
-    many = inside(here.zone, distance, SPREAD * count, rng)
+    many = along(here, SPREAD * count, rng)
     away = np.linalg.norm(many - here.robot.T_w_b[:3, 3], axis=1)
     return many[np.argsort(away)[SPREAD // 2 :: SPREAD]]
 

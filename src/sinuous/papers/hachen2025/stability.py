@@ -1,9 +1,10 @@
 """III-D, last paragraph: a search for targets at which a controller does not come to rest.
 
 Undisturbed, an exact robot, one target at a time. In free space there are a thousand targets from
-all over the workspace, at its edge and beyond it; in the winding tube a hundred from everywhere
-in it, whether the body gets there or not. A tip oscillates if it covers more than 0.5 mm in the
-last two seconds. That counts a slow approach too, so it is also counted how many go to and fro.
+all over the workspace, at its edge and beyond it; in the winding tube a hundred from all of its
+length ahead of the robot, whether it gets there or not. A tip oscillates if it covers more than
+0.5 mm in the last two seconds. That counts a slow approach too, so it is also counted how many go
+to and fro.
 """
 
 from typing import Any
@@ -15,7 +16,7 @@ from sinuous.papers.experiment import Data, Experiment
 from sinuous.papers.hachen2025.search import TUBE, search
 from sinuous.papers.hachen2025.settling import OSCILLATING, TURNS_BACK, End, end_of
 from sinuous.papers.hachen2025.stability_figures import draw
-from sinuous.papers.hachen2025.targets import anywhere, at_the_edge, beyond, inside
+from sinuous.papers.hachen2025.targets import along, anywhere, at_the_edge, beyond
 from sinuous.papers.hachen2025.undisturbed import (
     BEST,
     DLS,
@@ -88,10 +89,12 @@ def ends(item: Item) -> list[dict[str, Any]]:
 
 
 def worst(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    """The row of the reference controller with the longest way to and fro, or else of all."""
+    """The row of the reference controller that turns back most, or else has the longest way."""
     dls = [row for row in rows if row["controller"] != MPC]
     back = [row for row in dls if End(extent=row["extent_m"], path=row["path_m"]).to_and_fro]
-    return max(back or dls, key=lambda row: float(row["path_m"]))
+    if not back:
+        return max(dls, key=lambda row: float(row["path_m"]))
+    return max(back, key=lambda row: float(row["path_m"] / row["extent_m"]))
 
 
 def _example(rows: list[dict[str, Any]], duration: float) -> dict[str, Any]:
@@ -125,9 +128,8 @@ def _free_targets(count: dict[str, int]) -> list[tuple[str, list[float]]]:
 
 
 def _tube_targets(count: dict[str, int]) -> list[tuple[str, list[float]]]:
-    here, rng = place(TUBE), np.random.default_rng(SEED)
-    distance = float(here.robot.required_distance(here.margin)[-1])
-    return _named("in the tube", inside(here.zone, distance, count["in the tube"], rng))
+    targets = along(place(TUBE), count["in the tube"], np.random.default_rng(SEED))
+    return _named("in the tube", targets)
 
 
 def _named(kind: str, targets: Array) -> list[tuple[str, list[float]]]:

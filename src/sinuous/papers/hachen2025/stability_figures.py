@@ -7,14 +7,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from sinuous.arrays import Array
 from sinuous.papers.experiment import Data
 from sinuous.papers.hachen2025.plane import X, Z, draw_passage, draw_target
-from sinuous.papers.hachen2025.settling import End
+from sinuous.papers.hachen2025.settling import END, End
 from sinuous.papers.hachen2025.undisturbed import DLS, FREE, MPC, place
 from sinuous.view.curves import LIMIT_DASH
 from sinuous.view.style import BLUE, GREEN, LIMIT, ORANGE, TIME_LABEL, VERMILION, save
 from sinuous.view.units import MM_PER_M, PERCENT
 
+AIR = 0.015  # around the passage [m]
 SMALLEST, LARGEST = 1e-6, 1e2  # what a tip covers is drawn between these [mm]
 
 COLORS = {MPC: BLUE, **dict(zip(DLS, (VERMILION, ORANGE, GREEN), strict=True))}
@@ -63,29 +65,40 @@ def _share(axes: Axes, rows: Rows, law: str, color: str) -> None:
 
 
 def _worst(figure: Figure, example: Data) -> None:
-    """The tip's distance from the target over time, and the last shapes."""
-    curves, *shapes = figure.subplots(1, 3, width_ratios=(1.4, 1.0, 1.0))
+    """The tip's distance from the target, how it moves at the end, and the last shapes."""
+    grid = figure.add_gridspec(2, 3, width_ratios=(1.4, 1.0, 1.0))
+    whole, last = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[1, 0])
+    shapes = [figure.add_subplot(grid[:, k]) for k in (1, 2)]
     here, target = place(example["place"]), np.array(example["target_m"])
     for (law, way), axes in zip(example["ways"].items(), shapes, strict=True):
-        color = COLORS[law]
-        tip = np.array(way["tip_m"])
-        away = np.linalg.norm(tip - target, axis=1) * MM_PER_M
-        curves.plot(example["dt_s"] * np.arange(len(tip)), away, color=color, label=law)
+        tip, color = MM_PER_M * np.array(way["tip_m"]), COLORS[law]
+        time = example["dt_s"] * np.arange(len(tip))
+        away = np.linalg.norm(tip - MM_PER_M * target, axis=1)
+        whole.plot(time, away, color=color, label=law)
+        ending = time > time[-1] - END
+        last.plot(time[ending], _along_the_longest(tip[ending]), color=color)
         if example["place"] == FREE:
             axes.set_aspect("equal", adjustable="datalim")
             axes.set_xlabel("x [mm]")
         else:
-            draw_passage(axes, here.zone, air=0.015)
+            draw_passage(axes, here.zone, air=AIR)
         for points in np.array(way["shapes_m"]) * MM_PER_M:
             axes.plot(points[:, X], points[:, Z], color=color, linewidth=1.2)
         draw_target(axes, target)
         axes.set_title("the last second")
-    curves.set_title("one target, undisturbed")
-    curves.set_xlabel(TIME_LABEL)
-    curves.set_ylabel("tip to target [mm]")
-    curves.set_ylim(bottom=0.0)
-    curves.legend(loc="upper right")
+    whole.set_title("one target, undisturbed")
+    whole.set_ylabel("tip to target [mm]")
+    whole.set_ylim(bottom=0.0)
+    whole.legend(loc="upper right")
+    last.set_xlabel(TIME_LABEL)
+    last.set_ylabel("tip along its\nlargest motion [mm]")
     shapes[0].set_ylabel("z [mm]")
+
+
+def _along_the_longest(path: Array) -> Array:
+    """A path (K, 3) along the direction in which it covers most, around its mean."""
+    around = path - path.mean(axis=0)
+    return around @ np.linalg.svd(around, full_matrices=False)[2][0]
 
 
 def _search(figure: Figure, rows: Rows) -> None:

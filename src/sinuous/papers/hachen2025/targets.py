@@ -4,6 +4,7 @@ import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.geometry.safe_zone import SafeZone
+from sinuous.papers.hachen2025.undisturbed import Place
 from sinuous.robots.pcc import PccRobot
 
 PUSHED = 1.3
@@ -35,6 +36,21 @@ def beyond(robot: PccRobot, count: int, rng: np.random.Generator) -> Array:
     base = robot.T_w_b[:3, 3]
     share = rng.uniform(1.0, PUSHED, (count, 1))
     return base + share * (at_the_edge(robot, count, rng) - base)
+
+
+def along(here: Place, count: int, rng: np.random.Generator) -> Array:
+    """Places (count, 3) [m], uniform where the tip keeps the margin in a passage.
+
+    They are farther from the base than the tip at the start: the robot cannot draw back.
+    """
+    distance = float(here.robot.required_distance(here.margin)[-1])
+    base = here.robot.T_w_b[:3, 3]
+    nearest = np.linalg.norm(here.robot.tip(here.start) - base)
+    places = np.zeros((0, 3))
+    while len(places) < count:
+        p = inside(here.zone, distance, count, rng)
+        places = np.concatenate([places, p[np.linalg.norm(p - base, axis=1) > nearest]])
+    return places[:count]
 
 
 def inside(zone: SafeZone, distance: float, count: int, rng: np.random.Generator) -> Array:

@@ -41,7 +41,7 @@ PRINTED = Gains(gain=0.05, damping=1.0, penalty=DT)
 STIFF = Gains(gain=0.05, damping=1.0, penalty=1.0)
 """III-A, with dh/du = dh/dx: u is what the actuators move by in a step."""
 
-BEST = Gains(gain=1.0, damping=0.01, penalty=1.0)
+BEST = Gains(gain=1.0, damping=0.1, penalty=1.0)
 """What the search of `stability` finds."""
 
 MPC = "MPC"
