@@ -12,6 +12,7 @@ from sinuous.control.report import Status
 from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.pcc import PccRobot
+from sinuous.robots.robot_file import load_robot
 
 from .dense import solved
 from .loops import Judged, assert_limits_kept, drive
@@ -213,3 +214,26 @@ def test_the_default_cost_has_no_steady_error_and_the_printed_one_has() -> None:
         errors[name] = float(np.linalg.norm(robot.tip(state.c) - target))
     assert errors["default"] < STEADY
     assert errors["printed"] > 1e-3
+
+
+# Found by a search over a thousand targets: the first segment at its bend limit and all backbones
+# at full length, where a plan that takes bend limits for straight hops by 0.6 to 0.8 mm for ever.
+BEYOND_THE_EDGE = (
+    (0.0715517, 0.1958904, -0.1711446),
+    (-0.1753119, 0.0899870, -0.1617147),
+    (0.2037825, 0.0501471, -0.1721221),
+)
+
+
+@pytest.mark.parametrize("horizon", [1, 2, 3, 5, 10])
+@pytest.mark.parametrize("target", BEYOND_THE_EDGE)
+def test_a_target_beyond_the_edge_brings_the_robot_to_rest(
+    target: tuple[float, float, float], horizon: int
+) -> None:
+    robot = load_robot("hachen2025")
+    mpc = ShapeConstrainedMPC(robot, SafeZone.unbounded(), horizon=horizon)
+    state, tips = mpc.init(robot.home), list[Array]()
+    for _ in range(300):
+        state, _ = mpc.step(state, target)
+        tips.append(robot.tip(state.c))
+    assert np.max(np.ptp(np.array(tips[-60:]), axis=0)) < 1e-4

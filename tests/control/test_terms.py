@@ -36,6 +36,7 @@ GRADIENT = 1e-6  # relative error against central differences with steps of 1e-4
 STEP = 1e-4  # [rad or m]
 HESSIAN = 1e-5  # relative error against central differences of gradients with steps of 1e-4
 FLOOR = 1e-9  # share of the largest curvature that no direction of a stage falls below
+NEAR_BEND, STRAIGHT = 1e-4, 1e-3  # as the controller has them [m], [rad]
 DAMPING = 1e-5  # of the tip's null space [m^2 of tip per m^2 of actuator]
 ROUNDING = 1e-12  # relative
 # Force of the posture cost on the tip, relative to the cost's own gradient: the damping over
@@ -195,7 +196,8 @@ def test_gradient_is_that_of_the_cost(kind: str, name: str, seed: int, horizon: 
 @settings(max_examples=20)
 @pytest.mark.parametrize("kind", sorted(SUMS))
 def test_hessian_is_the_nearest_convex_one_of_the_cost(kind: str, name: str, seed: int) -> None:
-    """Of the exact cost, with the curvature of the tip's kinematics; a user's is as it is given."""
+    """Of the exact cost, with the curvature of the tip's kinematics and of bend limits that it
+    pushes against; a user's is as it is given."""
     rng, kinds, robot = np.random.default_rng(seed), SUMS[kind], ROBOTS[name]
     mpc = controller(robot, *(cost for cost, _ in kinds), horizon=2)
     state, target = random_state(mpc, rng, 0.5), rng.normal(0.0, 0.1, 3)
@@ -211,12 +213,28 @@ def test_hessian_is_the_nearest_convex_one_of_the_cost(kind: str, name: str, see
             if kind_of in kinds:  # quadratic: any step will do
                 value = kind_of[1](robot, c, target)
                 H += curvature(lambda c, value=value: slopes(value, c), c)
-        H = convex(T.T @ H @ T)
+        f = np.zeros(n)
+        for kind_of in kinds:
+            if kind_of is not POINT:
+                f += slopes(kind_of[1](robot, c, target), c)
+        H = convex(T.T @ (H + curvature_of_limits(robot, c, f, T)) @ T)
         if POINT in kinds:
             H += T.T @ MIDDLE.quadratic(robot, c, target).hessian @ T
         expected[i * n : (i + 1) * n, i * n : (i + 1) * n] += H
     modelled = problem.H * size_of(problem, exact_gradient(mpc, kinds, state, target))
     assert np.max(np.abs(modelled - expected)) < HESSIAN * np.max(np.abs(expected))
+
+
+def curvature_of_limits(robot: PccRobot, c: Array, f: Array, T: Array) -> Array:
+    """By c (n, n): -push d2(slack), each limit's push as if it were the only one."""
+    H = np.zeros((len(c), len(c)))
+    for j, slack in enumerate(robot.bend_slack(c)):
+        theta = robot.bend_limits[0][j]
+        if slack <= NEAR_BEND and np.hypot(c[theta], c[theta + 1]) > STRAIGHT:
+            normal = T.T @ robot.bend_slack_jacobian(c)[j]
+            push = max(float(normal @ T.T @ f) / float(normal @ normal), 0.0)
+            H -= push * curvature(lambda c, j=j: robot.bend_slack_jacobian(c)[j], c)
+    return H
 
 
 def tip_gradient(robot: PccRobot, c: Array, target: Array) -> Array:

@@ -1,14 +1,16 @@
 """Second-order model of the costs at one predicted stage, in y.
 
 The Hessian is that of the Lagrangian: the curvature of the kinematics under the pull on the tip
-and the push of the walls is included.  Without it a target far outside the walls makes the step
-oscillate, because the pull is then large in directions in which the tip's Jacobian has no gain.
+and the push of the walls is included, and that of bend limits.  Without it a target far outside
+the walls makes the step oscillate, because the pull is then large in directions in which the
+tip's Jacobian has no gain.
 """
 
 import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.compiled import kernel
+from sinuous.control.step.bends import add_bend_curvature
 from sinuous.control.step.data import Contacts, Model, Motion, Problem, Scratch, Shape
 from sinuous.control.step.eigen import decompose
 from sinuous.robots import pcc_kernels, pcc_second
@@ -69,6 +71,7 @@ def linearise(
     if aims.posture > 0.0:
         _posture(model, c, free, H, f, scratch)
     _quadratic(model, c, f, scratch)
+    add_bend_curvature(model, c, f, H, scratch)
     make_convex(H, scratch.square, scratch.row, scratch.other[0])
 
 

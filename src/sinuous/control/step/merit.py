@@ -5,10 +5,12 @@ import numpy as np
 from sinuous.arrays import Array
 from sinuous.compiled import kernel
 from sinuous.control.step.clock import seconds
-from sinuous.control.step.data import Contacts, Model, Shape, Work
+from sinuous.control.step.cuts import BEND_RESERVE
+from sinuous.control.step.data import BEND, Contacts, Model, Shape, Work
 from sinuous.control.step.look import bend_slack, look
 
-# What a metre beyond a wall costs when plans are compared, in units of the strongest push.
+# What a metre beyond a wall or a bend limit costs when plans are compared, in units of the
+# strongest push.
 PRICE = 3.0
 
 # Halvings of a change of the plan before it is taken as it is.
@@ -23,19 +25,18 @@ def descend(
     target: Array,
     extra_H: Array,
     extra_f: Array,
+    used: int,
     deadline: float,
 ) -> int:
     """Shorten the change from the old to the new stages until it lowers the exact cost.
 
     Without it the plan can hop for ever between two sets of active walls (a limit cycle of
     millimetres where three walls meet at the tip).  Returns how often it was halved.
+
+    Arguments:
+        used: rows of the last QP
     """
-    strongest = 0.0
-    for i in range(contacts.number.size):
-        for k in range(contacts.number[i]):
-            push = contacts.push[i, k]
-            strongest = max(strongest, push[0] ** 2 + push[1] ** 2 + push[2] ** 2)
-    price = PRICE * np.sqrt(strongest)
+    price = PRICE * _strongest_push(work, contacts, used)
     before = merit(model, work, work.old, target, price, extra_H, extra_f)
     old, new = work.old, work.found
     for halved in range(BACKTRACKS):
@@ -51,6 +52,20 @@ def descend(
                 work.scratch,
             )  # fmt: skip
     return BACKTRACKS
+
+
+@kernel
+def _strongest_push(work: Work, contacts: Contacts, used: int) -> float:
+    """Of a wall or a bend limit in the last QP [cost / m]."""
+    walls, strongest = 0.0, 0.0
+    for i in range(contacts.number.size):
+        for k in range(contacts.number[i]):
+            push = contacts.push[i, k]
+            walls = max(walls, push[0] ** 2 + push[1] ** 2 + push[2] ** 2)
+    for k in range(used):
+        if work.problem.meaning.what[k] == BEND:
+            strongest = max(strongest, work.problem.strength[k])
+    return float(max(strongest, np.sqrt(walls)))
 
 
 @kernel
@@ -91,7 +106,7 @@ def merit(
             if room < 0.0:
                 total -= price * room
         for j in range(bends.theta.size):
-            total += price * max(-bend_slack(bends, j, c), 0.0)
+            total += price * max(BEND_RESERVE - bend_slack(bends, j, c), 0.0)
     return total
 
 

@@ -78,7 +78,9 @@ def decide(
     if prepared.built:
         plan.lean(work, prepared.hard, solved, leaning)
     if solved.whole:
-        halvings = descend(model, work, leaning, target, extra_H, extra_f, prepared.deadline)
+        halvings = descend(
+            model, work, leaning, target, extra_H, extra_f, solved.used, prepared.deadline
+        )
     share, tests = accept(model, work, prepared.last)
     in_time = solved.whole and solved.status != OUT_OF_TIME
     if np.isfinite(prepared.last):
