@@ -27,6 +27,7 @@ check: $(STAMP)
 	@set -e; for example in examples/*.py; do \
 		echo "$$example"; $(BIN)/python -W error "$$example"; \
 	done
+	PYTHONWARNINGS=error $(BIN)/sinuous reproduce hachen2025 --quick --out out/check
 
 # Versions and hashes of all dependencies, for every platform and Python version.
 # The --no options keep paths, addresses and commands of this machine out of the file.

@@ -14,7 +14,7 @@ import numpy as np
 
 from sinuous.arrays import Array, ArrayLike, IntArray
 from sinuous.control.observed import is_finite, observe
-from sinuous.control.report import Command, Report, Status
+from sinuous.control.report import Command, Report, Status, hold_still
 from sinuous.control.saturation import attainable, speed_share
 from sinuous.control.terms import PRINTED_RATE
 from sinuous.geometry.safe_zone import SafeZone
@@ -209,16 +209,7 @@ class DampedLeastSquares:
         return Status.BLOCKED if fastest < STILL * self.dt else Status.TRACKING
 
     def _hold(self, state: DLSState, reason: str, began: float) -> tuple[DLSState, Command]:
-        report = Report(
-            status=Status.HOLDING,
-            reason=reason,
-            solve_time=perf_counter() - began,
-            step_fraction=0.0,
-            points=self.robot.points(state.c),
-            robot=self.robot,
-            zone=self.zone,
-        )
-        return state, Command(rates=np.zeros(len(self.robot.actuator_names)), report=report)
+        return state, hold_still(self.robot, self.zone, state.c, reason, began)
 
 
 def _fault(state: DLSState, goal: Array, measured: Measurement | None) -> str:

@@ -35,8 +35,8 @@ class LocalController:
     """
 
     tip_gain: float = 30.0
-    body_gain: float = 15.0
-    damping: float = 1.0
+    body_gain: float = 5.0
+    damping: float = 0.3
     share: float = 0.2
 
     def __post_init__(self) -> None:

@@ -20,7 +20,7 @@ from sinuous.arrays import Array, ArrayLike
 from sinuous.control.model import Settings, make_model
 from sinuous.control.qp import DenseProblem
 from sinuous.control.reading import Leaning
-from sinuous.control.report import Command, Report, Status, Workload
+from sinuous.control.report import Command, Report, Status, Workload, hold_still
 from sinuous.control.step import interior, plan
 from sinuous.control.step.data import CONTACTS, Contacts, Model
 from sinuous.control.step.memory import Memory
@@ -272,17 +272,7 @@ class ShapeConstrainedMPC:
         return self._hold(state, reason, perf_counter())
 
     def _hold(self, state: MPCState, reason: str, began: float) -> tuple[MPCState, Command]:
-        report = Report(
-            status=Status.HOLDING,
-            reason=reason,
-            solve_time=perf_counter() - began,
-            step_fraction=0.0,
-            points=self.robot.points(state.c),
-            robot=self.robot,
-            zone=self.zone,
-        )
-        rates = np.zeros(len(self.robot.actuator_names))
-        return self.init(state.c), Command(rates=rates, report=report)
+        return self.init(state.c), hold_still(self.robot, self.zone, state.c, reason, began)
 
     def _status(self, outcome: Outcome) -> Status:
         if outcome.slack < 0.0:

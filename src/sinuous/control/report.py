@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
+from time import perf_counter
 
 import numpy as np
 
@@ -106,3 +107,21 @@ class Command:
     local: Array = field(default_factory=lambda: np.zeros(0))
     clipped: float = 0.0
     offset: Array = field(default_factory=lambda: np.zeros(3))
+
+
+def hold_still(robot: Robot, zone: SafeZone, c: Array, reason: str, began: float) -> Command:
+    """A command to stay at configuration c (n,), with the reason in its report.
+
+    Arguments:
+        began: when the step did, by `time.perf_counter` [s]
+    """
+    report = Report(
+        status=Status.HOLDING,
+        reason=reason,
+        solve_time=perf_counter() - began,
+        step_fraction=0.0,
+        points=robot.points(c),
+        robot=robot,
+        zone=zone,
+    )
+    return Command(rates=np.zeros(len(robot.actuator_names)), report=report)
