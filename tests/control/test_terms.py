@@ -196,8 +196,8 @@ def test_gradient_is_that_of_the_cost(kind: str, name: str, seed: int, horizon: 
 @settings(max_examples=20)
 @pytest.mark.parametrize("kind", sorted(SUMS))
 def test_hessian_is_the_nearest_convex_one_of_the_cost(kind: str, name: str, seed: int) -> None:
-    """Of the exact cost, with the curvature of the tip's kinematics and of bend limits that it
-    pushes against; a user's is as it is given."""
+    """Of the exact cost, with the curvature of the tip's kinematics, also under the force that
+    holds the posture, and of bend limits that it pushes against; a user's is as it is given."""
     rng, kinds, robot = np.random.default_rng(seed), SUMS[kind], ROBOTS[name]
     mpc = controller(robot, *(cost for cost, _ in kinds), horizon=2)
     state, target = random_state(mpc, rng, 0.5), rng.normal(0.0, 0.1, 3)
@@ -213,6 +213,9 @@ def test_hessian_is_the_nearest_convex_one_of_the_cost(kind: str, name: str, see
             if kind_of in kinds:  # quadratic: any step will do
                 value = kind_of[1](robot, c, target)
                 H += curvature(lambda c, value=value: slopes(value, c), c)
+        if POSTURE in kinds:
+            mu = holding_force(robot, c)
+            H -= curvature(lambda c, mu=mu: robot.points_jacobian(c)[-1].T @ mu, c)
         f = np.zeros(n)
         for kind_of in kinds:
             if kind_of is not POINT:
@@ -223,6 +226,13 @@ def test_hessian_is_the_nearest_convex_one_of_the_cost(kind: str, name: str, see
         expected[i * n : (i + 1) * n, i * n : (i + 1) * n] += H
     modelled = problem.H * size_of(problem, exact_gradient(mpc, kinds, state, target))
     assert np.max(np.abs(modelled - expected)) < HESSIAN * np.max(np.abs(expected))
+
+
+def holding_force(robot: PccRobot, c: Array) -> Array:
+    """At the tip (3,): what balances the posture's gradient along the tip's motions."""
+    M = actuator_metric(robot)
+    J = robot.points_jacobian(c)[-1] @ np.linalg.inv(M)
+    return np.linalg.solve(J @ J.T + DAMPING * np.eye(3), J @ (10.0 * M @ (c - robot.home)))
 
 
 def curvature_of_limits(robot: PccRobot, c: Array, f: Array, T: Array) -> Array:

@@ -247,6 +247,7 @@ class Scratch:
         amount: (S,)
         force: (S + 1, 3)
         second: scratch of `pcc_second.curvature`
+        small: vectors and a matrix of space (5, 3)
     """
 
     stack: IntArray
@@ -261,6 +262,7 @@ class Scratch:
     amount: Array
     force: Array
     second: Array
+    small: Array
 
 
 class Contacts(NamedTuple):

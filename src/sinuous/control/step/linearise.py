@@ -3,7 +3,9 @@
 The Hessian is that of the Lagrangian: the curvature of the kinematics under the pull on the tip
 and the push of the walls is included, and that of bend limits.  Without it a target far outside
 the walls makes the step oscillate, because the pull is then large in directions in which the
-tip's Jacobian has no gain.
+tip's Jacobian has no gain.  The posture counts in the tip's null space, which turns as the body
+moves: its curvature is that of the kinematics under the force at the tip that would hold the
+body in its posture.  Without it the body trembles around a posture that is far from home.
 """
 
 import numpy as np
@@ -42,13 +44,17 @@ def linearise(
     pcc_kernels.point_jacobian(body.chain, last, c, R, p, ends, spins, scratch.J)
     tip, free, H, f = motion.tip[i], motion.free[i], problem.H[i], problem.f[i]
     _to_y(scratch.J, scale.inverse, scale.step, tip)
-    _project(tip, scale.step, free)
+    _project(tip, scale.step, free, scratch.small)
 
-    number = 1
+    number, pull = 1, scratch.small[3]
     scratch.number[0] = last
     for d in range(3):
         error = old.points[i, last, d] - target[d]
         scratch.force[0, d] = 2.0 * aims.tip * error
+    for d in range(3):
+        pull[d] = scratch.force[0, d]
+    if aims.posture > 0.0:
+        _hold_posture(model, c, tip, scratch)
     for k in range(contacts.number[i]):
         scratch.number[number] = contacts.point[i, k]
         for d in range(3):
@@ -63,7 +69,7 @@ def linearise(
     for r in range(n):
         f[r] = 0.0
         for d in range(3):
-            f[r] += tip[d, r] * scratch.force[0, d]
+            f[r] += tip[d, r] * pull[d]
         for j in range(n):
             H[r, j] += scale.Q[r, j]
             for d in range(3):
@@ -105,8 +111,9 @@ def _congruence(H: Array, inverse: Array, step: float, other: Array, out: Array)
 
 
 @kernel
-def _project(tip: Array, step: float, out: Array) -> None:
-    """out = I - J' (J J' + damping)^-1 J with the tip's Jacobian J by actuator metres."""
+def _project(tip: Array, step: float, out: Array, inverse: Array) -> None:
+    """out = I - J' inverse J, with inverse = (J J' + damping)^-1 in its first three rows, and the
+    tip's Jacobian J by actuator metres times the step."""
     n, s2 = tip.shape[1], step * step
     a, b, c, d, e, g = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for j in range(n):
@@ -118,12 +125,39 @@ def _project(tip: Array, step: float, out: Array) -> None:
     A, B, C = d * g - e * e, c * e - b * g, b * e - c * d
     D, E, G = a * g - c * c, b * c - a * e, a * d - b * b
     det = a * A + b * B + c * C
+    inverse[0, 0], inverse[0, 1], inverse[0, 2] = A / det, B / det, C / det
+    inverse[1, 0], inverse[1, 1], inverse[1, 2] = B / det, D / det, E / det
+    inverse[2, 0], inverse[2, 1], inverse[2, 2] = C / det, E / det, G / det
     for r in range(n):
-        x, y, z = tip[0, r] / det, tip[1, r] / det, tip[2, r] / det
-        u, v, w = A * x + B * y + C * z, B * x + D * y + E * z, C * x + E * y + G * z
+        u, v, w = 0.0, 0.0, 0.0
+        for d in range(3):
+            u += inverse[0, d] * tip[d, r]
+            v += inverse[1, d] * tip[d, r]
+            w += inverse[2, d] * tip[d, r]
         for j in range(n):
             out[r, j] = -(u * tip[0, j] + v * tip[1, j] + w * tip[2, j])
         out[r, r] += 1.0
+
+
+@kernel
+def _hold_posture(model: Model, c: Array, tip: Array, scratch: Scratch) -> None:
+    """Take the force that would hold the posture from the one at the tip, for its curvature.
+
+    It is mu = (J J' + damping)^-1 J g with the gradient g of the posture without projection.
+    """
+    aims, scale, n = model.aims, model.scale, c.size
+    inverse, along = scratch.small, scratch.small[4]
+    for d in range(3):
+        along[d] = 0.0
+    for r in range(n):
+        total = 0.0
+        for j in range(n):
+            total += scale.metric[r, j] * (c[j] - aims.home[j])
+        for d in range(3):
+            along[d] += 2.0 * aims.posture * scale.step * tip[d, r] * total
+    for d in range(3):
+        for e in range(3):
+            scratch.force[0, d] -= inverse[d, e] * along[e]
 
 
 @kernel

@@ -84,6 +84,7 @@ def new_work(model: Model, horizon: int) -> Work:
         np.zeros(S),
         np.zeros((S + 1, 3)),
         np.zeros(pcc_second.scratch_size(M, n)),
+        np.zeros((5, 3)),
     )
     B = PIECES + 1
     way = Way(
