@@ -107,7 +107,7 @@ class ShapeConstrainedMPC:
     _: KW_ONLY
     margin: float = 0.0
     dt: float = 1 / 30
-    horizon: int = 5
+    horizon: int = 10
     costs: Costs = field(default_factory=Costs)
     tip_speed: float | None = None
     budget: float | None = None

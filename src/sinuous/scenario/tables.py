@@ -54,7 +54,7 @@ class ZoneTable:
 class MpcTable:
     """`[mpc]`: the controller."""
 
-    horizon: Annotated[int, Field(ge=1, le=_LongestHorizon)] = 5
+    horizon: Annotated[int, Field(ge=1, le=_LongestHorizon)] = 10
     rate: Annotated[Frequency, _Positive] = 30.0
     margin: Annotated[Length, _NotNegative] = 0.003
     tip_speed: Annotated[Speed, _Positive] | None = None

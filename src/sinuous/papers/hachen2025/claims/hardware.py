@@ -86,7 +86,24 @@ def speeds_are_kept(found: Found) -> Verdict:
     )
 
 
+def prototype(_: Found) -> Verdict:
+    """What only the prototype can tell."""
+    return Verdict(
+        measured="",
+        holds=None,
+        reason="needs the prototype: section IV runs here on a simulated robot that is not its "
+        "model",
+    )
+
+
 HARDWARE = (
+    Claim(
+        name="prototype",
+        section="abstract, IV",
+        printed="the method is validated on a hardware prototype",
+        needs=(),
+        judge=prototype,
+    ),
     Claim(
         name="nominal_reaches_its_goals",
         section="IV-A, Fig. 12",
