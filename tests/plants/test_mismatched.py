@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -257,3 +258,13 @@ def test_scatter_is_the_stated_share() -> None:
 def test_senseless_values_are_refused(wrong: Callable[[], Mismatch]) -> None:
     with pytest.raises(ValueError, match=r"must"):
         wrong()
+
+
+def test_a_shaft_that_is_all_the_way_back_has_no_length_and_no_curvature() -> None:
+    path = Path(__file__).parents[2] / "examples" / "robots" / "endoscope.toml"
+    robot = load_robot(path)
+    assert robot.home[0] == 0.0  # the insertion stage
+    for plant in (KinematicPlant(robot, seed=0), MismatchedPlant(robot, seed=0)):
+        measured = plant.step(np.zeros(len(robot.actuator_names)), 1 / 30)
+        assert np.all(np.isfinite(plant.truth.curvature))
+        np.testing.assert_allclose(measured.points, robot.points(robot.home), atol=1e-12)

@@ -156,7 +156,7 @@ class MismatchedPlant:
         theta, line = self._line.section_bends(c), self._line
         theta[self._bent] = self._bend(theta[self._bent])
         lengths = line.section_lengths(c)
-        curvature = (theta / lengths[:, None])[line.section]
+        curvature = line.curvature(theta, lengths)
         uneven = 1.0 + self._unevenness[line.section] * (1.0 - 2.0 * line.middle)
         return Bends(
             lengths=lengths[line.section] * line.share,

@@ -93,12 +93,22 @@ class Centreline:
     def model(self, c: Array) -> Bends:
         """The shape of a configuration (n,) by the model: every section bends evenly."""
         lengths = self.section_lengths(c)
-        curvature = self.section_bends(c) / lengths[:, None]
         return Bends(
             lengths=lengths[self.section] * self.share,
-            curvature=curvature[self.section],
+            curvature=self.curvature(self.section_bends(c), lengths),
             tilt=np.zeros(HINGE),
         )
+
+    def curvature(self, bends: Array, lengths: Array) -> Array:
+        """Curvature (A, 2) [1/m] of every arc if its section bends evenly.
+
+        Arguments:
+            bends: bend vectors of the sections (M, 2) [rad]
+            lengths: of the sections (M,) [m]; an insertion shaft that is all the way back has none
+        """
+        out = np.zeros_like(bends)
+        np.divide(bends, lengths[:, None], out=out, where=lengths[:, None] > 0.0)
+        return out[self.section]
 
     # --- kinematics ----------------------------------------------------------------------
 
