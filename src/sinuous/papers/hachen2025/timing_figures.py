@@ -17,7 +17,7 @@ from sinuous.papers.hachen2025.timing_verdicts import (
     of,
 )
 from sinuous.view.curves import LIMIT_DASH, write_plainly
-from sinuous.view.style import BLUE, GREEN, GREY, LIMIT, ORANGE, VERMILION, save
+from sinuous.view.style import BLUE, GREEN, GREY, LIMIT, ORANGE, PURPLE, SLATE, VERMILION, save
 from sinuous.view.units import MS_PER_S
 
 LONGEST = 20.8  # end of the axis of horizons
@@ -49,7 +49,7 @@ def draw(data: Data, folder: Path) -> list[Path]:
 def _times(axes: Axes, data: Data, constrained: bool) -> None:
     """Means as lines with marks, and bands from the median to the 99th percentile."""
     names = dict.fromkeys(row["controller"] for row in data["rows"])
-    for name, color in zip(names, (BLUE, VERMILION, ORANGE, GREEN), strict=False):
+    for name, color in zip(names, (BLUE, VERMILION, ORANGE, GREEN, PURPLE, SLATE), strict=False):
         rows = of(data, name, constrained)
         if not rows:
             continue
