@@ -1,5 +1,6 @@
 """Spreads the runs of an experiment over the cores; what they find does not depend on how many."""
 
+import signal
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
@@ -49,6 +50,11 @@ class Workers:
         return results
 
 
+def _leave_interrupts_to_the_parent() -> None:
+    """Ctrl-C reaches every process of a terminal; one that ends in words is enough."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
 @contextmanager
 def workers(count: int, observe: Observe = ignore) -> Generator[Workers]:
     """Workers in that many processes, in this one if it is one."""
@@ -56,5 +62,6 @@ def workers(count: int, observe: Observe = ignore) -> Generator[Workers]:
         yield Workers(observe=observe)
         return
     # Spawned, because a fork copies locks that other threads hold.
-    with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as executor:
+    context = get_context("spawn")
+    with ProcessPoolExecutor(count, context, _leave_interrupts_to_the_parent) as executor:
         yield Workers(executor=executor, observe=observe)
