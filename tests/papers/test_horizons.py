@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sinuous.papers.hachen2025 import horizon_verdicts as verdicts
-from sinuous.papers.hachen2025.horizon_runs import drive, guided, settle
-from sinuous.papers.hachen2025.horizon_scenes import (
+from sinuous.papers.hachen2025.horizons import verdicts
+from sinuous.papers.hachen2025.horizons.experiment import HORIZONS_EXPERIMENT, SEED
+from sinuous.papers.hachen2025.horizons.runs import drive, guided, settle
+from sinuous.papers.hachen2025.horizons.scenes import (
     HOLE,
     HOLE_RADIUS,
     PLATE,
@@ -25,7 +26,6 @@ from sinuous.papers.hachen2025.horizon_scenes import (
     plates,
     posts,
 )
-from sinuous.papers.hachen2025.horizons import HORIZONS_EXPERIMENT, SEED
 from sinuous.papers.workers import Workers
 
 DT = 1 / 30

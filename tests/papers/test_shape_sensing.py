@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from sinuous.papers.experiment import Data
-from sinuous.papers.hachen2025.shape_sensing import (
+from sinuous.papers.hachen2025.shape_sensing.experiment import (
     MISMATCHES,
     QUICK_INDIVIDUALS,
     QUICK_POSES,

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from sinuous.arrays import Array
-from sinuous.papers.hachen2025.search import NEAR, settling_time
 from sinuous.papers.hachen2025.settling import END, OSCILLATING, end_of
-from sinuous.papers.hachen2025.stability import STABILITY, TARGETS, worst
+from sinuous.papers.hachen2025.stability.experiment import STABILITY, TARGETS, worst
+from sinuous.papers.hachen2025.stability.search import NEAR, settling_time
 from sinuous.papers.hachen2025.targets import (
     PUSHED,
     along,

@@ -14,9 +14,9 @@ from sinuous.bench.ours import Ours
 from sinuous.bench.result import plain
 from sinuous.bench.scene import stress_scene
 from sinuous.geometry.safe_zone import SafeZone
-from sinuous.papers.hachen2025 import timing
-from sinuous.papers.hachen2025 import timing_verdicts as verdicts
-from sinuous.papers.hachen2025.timing import TIMING, measure
+from sinuous.papers.hachen2025.timing import experiment as timing
+from sinuous.papers.hachen2025.timing import verdicts
+from sinuous.papers.hachen2025.timing.experiment import TIMING, measure
 from sinuous.papers.workers import Workers
 
 STEPS = 30

@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sinuous.papers.hachen2025.sweeps import DT, SPEED, SWEEPS
 from sinuous.papers.hachen2025.undisturbed import MPC, place
-from sinuous.papers.hachen2025.unreachable import (
+from sinuous.papers.hachen2025.unreachable.experiment import (
     BEST,
     PRINTED,
     TUBE,
@@ -17,6 +16,7 @@ from sinuous.papers.hachen2025.unreachable import (
     rest,
     sweep,
 )
+from sinuous.papers.hachen2025.unreachable.sweeps import DT, SPEED, SWEEPS
 from sinuous.papers.workers import Workers
 
 KEPT = 1e-6  # [m] by which the MPC may miss the margin

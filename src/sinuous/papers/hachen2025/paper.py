@@ -1,16 +1,16 @@
 """Paper B: what `sinuous reproduce hachen2025` runs."""
 
 from sinuous.papers.hachen2025.claims import CLAIMS
-from sinuous.papers.hachen2025.convergence import CONVERGENCE
-from sinuous.papers.hachen2025.hardware import HARDWARE
-from sinuous.papers.hachen2025.horizons import HORIZONS_EXPERIMENT
+from sinuous.papers.hachen2025.convergence.experiment import CONVERGENCE
+from sinuous.papers.hachen2025.hardware.experiment import HARDWARE
+from sinuous.papers.hachen2025.horizons.experiment import HORIZONS_EXPERIMENT
 from sinuous.papers.hachen2025.printed import PRINTED_READINGS
-from sinuous.papers.hachen2025.shape_sensing import SHAPE_SENSING
-from sinuous.papers.hachen2025.stability import STABILITY
-from sinuous.papers.hachen2025.timing import TIMING
+from sinuous.papers.hachen2025.shape_sensing.experiment import SHAPE_SENSING
+from sinuous.papers.hachen2025.stability.experiment import STABILITY
+from sinuous.papers.hachen2025.timing.experiment import TIMING
 from sinuous.papers.hachen2025.tuning import TUNING
-from sinuous.papers.hachen2025.unreachable import UNREACHABLE
-from sinuous.papers.hachen2025.waypoints import WAYPOINTS
+from sinuous.papers.hachen2025.unreachable.experiment import UNREACHABLE
+from sinuous.papers.hachen2025.waypoints.experiment import WAYPOINTS
 from sinuous.papers.reproduce import Paper
 
 HACHEN2025 = Paper(

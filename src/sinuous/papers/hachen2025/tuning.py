@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from sinuous.control.local import LocalController
 from sinuous.control.offset_free import OffsetFree
 from sinuous.papers.experiment import Data, Experiment
-from sinuous.papers.hachen2025.convergence import response
+from sinuous.papers.hachen2025.convergence.experiment import response
 from sinuous.papers.hachen2025.runs import held, sampled_targets, scenario
 from sinuous.papers.workers import Workers
 from sinuous.view.style import BLUE, GREEN, GREY, VERMILION, save

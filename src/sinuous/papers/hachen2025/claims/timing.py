@@ -1,7 +1,7 @@
 """III-F: how long a step takes."""
 
 from sinuous.papers.claims import Claim, Found, Verdict
-from sinuous.papers.hachen2025.timing_verdicts import (
+from sinuous.papers.hachen2025.timing.verdicts import (
     BELOW_BOUND,
     OURS,
     PRINTED_HORIZON,

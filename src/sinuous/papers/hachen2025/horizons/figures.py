@@ -11,14 +11,14 @@ from matplotlib.patches import Circle
 
 from sinuous.bench.axis_figure import draw_times, keys, tick
 from sinuous.papers.experiment import Data
-from sinuous.papers.hachen2025.horizon_scenes import (
+from sinuous.papers.hachen2025.horizons.scenes import (
     HOLE,
     HOLE_RADIUS,
     PLATE,
     TARGET,
     shown_scenario,
 )
-from sinuous.papers.hachen2025.horizon_verdicts import (
+from sinuous.papers.hachen2025.horizons.verdicts import (
     PERIOD,
     REACHED,
     errors,

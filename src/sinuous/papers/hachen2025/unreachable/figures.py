@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from sinuous.arrays import Array
 from sinuous.papers.experiment import Data
 from sinuous.papers.hachen2025.plane import X, Y, Z, draw_body, draw_passage, draw_target
-from sinuous.papers.hachen2025.sweeps import SWEEPS
 from sinuous.papers.hachen2025.undisturbed import place
+from sinuous.papers.hachen2025.unreachable.sweeps import SWEEPS
 from sinuous.view.curves import LIMIT_DASH
 from sinuous.view.style import BLUE, GREEN, GREY, LIMIT, ORANGE, TIME_LABEL, VERMILION, save
 from sinuous.view.units import MM_PER_M

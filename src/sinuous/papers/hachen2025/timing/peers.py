@@ -13,7 +13,7 @@ from sinuous.bench.peers.setup import nlp_for
 from sinuous.bench.peers.silence import quiet
 from sinuous.bench.peers.sqp import sqp
 from sinuous.bench.scene import Scene
-from sinuous.papers.hachen2025.timing_verdicts import COMPILED, INSTALLED
+from sinuous.papers.hachen2025.timing.verdicts import COMPILED, INSTALLED
 
 COMPILED_AT = (2, 5)  # compiling a program takes half a minute the first time
 ACADOS_AT = 2

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from sinuous.papers.experiment import Data, Experiment
-from sinuous.papers.hachen2025.horizon_runs import (
+from sinuous.papers.hachen2025.horizons.figures import draw
+from sinuous.papers.hachen2025.horizons.runs import (
     PASSAGES,
     Course,
     cost,
@@ -19,7 +20,7 @@ from sinuous.papers.hachen2025.horizon_runs import (
     guided,
     settle,
 )
-from sinuous.papers.hachen2025.horizon_scenes import (
+from sinuous.papers.hachen2025.horizons.scenes import (
     MAP_HORIZONS,
     map_scene,
     passages,
@@ -27,8 +28,7 @@ from sinuous.papers.hachen2025.horizon_scenes import (
     posts,
     shown_scenario,
 )
-from sinuous.papers.hachen2025.horizon_verdicts import REACHED
-from sinuous.papers.hachen2025.horizons_figures import draw
+from sinuous.papers.hachen2025.horizons.verdicts import REACHED
 from sinuous.papers.sketch import sketch
 from sinuous.papers.workers import Workers
 from sinuous.session import run as run_session

@@ -14,7 +14,7 @@ import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.papers.experiment import Data, Experiment
-from sinuous.papers.hachen2025.shape_sensing_figures import draw
+from sinuous.papers.hachen2025.shape_sensing.figures import draw
 from sinuous.papers.workers import Workers
 from sinuous.plants.fibre import Fibre, FibreReader
 from sinuous.plants.mismatched import Mismatch, MismatchedPlant

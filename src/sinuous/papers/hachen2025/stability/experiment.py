@@ -13,9 +13,9 @@ import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.papers.experiment import Data, Experiment
-from sinuous.papers.hachen2025.search import TUBE, search
 from sinuous.papers.hachen2025.settling import OSCILLATING, TURNS_BACK, End, end_of
-from sinuous.papers.hachen2025.stability_figures import draw
+from sinuous.papers.hachen2025.stability.figures import draw
+from sinuous.papers.hachen2025.stability.search import TUBE, search
 from sinuous.papers.hachen2025.targets import along, anywhere, at_the_edge, beyond
 from sinuous.papers.hachen2025.undisturbed import (
     BEST,

@@ -19,8 +19,8 @@ from sinuous.bench.ours import Ours
 from sinuous.bench.scene import Scene, stress_scene
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.papers.experiment import Data, Experiment
-from sinuous.papers.hachen2025.timing_figures import draw
-from sinuous.papers.hachen2025.timing_verdicts import INSTALLED, OURS
+from sinuous.papers.hachen2025.timing.figures import draw
+from sinuous.papers.hachen2025.timing.verdicts import INSTALLED, OURS
 from sinuous.papers.workers import Workers
 
 DISKS, VERTICES = 30, 350
@@ -73,7 +73,7 @@ def _others(scene: Scene, horizon: int, ours: Drive, *, compiles: bool) -> Itera
     if find_spec("casadi") is None:
         yield {"controller": INSTALLED, **nothing(), "missing": NO_CASADI}
         return
-    from sinuous.papers.hachen2025.timing_peers import peers  # needs CasADi
+    from sinuous.papers.hachen2025.timing.peers import peers  # needs CasADi
 
     short = replace(scene, targets=scene.targets[: PEER_STEPS[horizon]])
     for peer in peers(short, horizon, compiles=compiles):

@@ -14,10 +14,10 @@ from sinuous.arrays import Array
 from sinuous.control.projected import ProjectedTarget
 from sinuous.papers.experiment import Data, Experiment
 from sinuous.papers.hachen2025.settling import end_of
-from sinuous.papers.hachen2025.sweeps import SPEED, SWEEPS
 from sinuous.papers.hachen2025.targets import outside
 from sinuous.papers.hachen2025.undisturbed import DLS, DT, MPC, Place, drive, held, place, tips
-from sinuous.papers.hachen2025.unreachable_figures import draw
+from sinuous.papers.hachen2025.unreachable.figures import draw
+from sinuous.papers.hachen2025.unreachable.sweeps import SPEED, SWEEPS
 from sinuous.papers.workers import Workers
 from sinuous.session.surface import SurfaceClearance
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.papers.experiment import Data, Experiment
-from sinuous.papers.hachen2025.convergence import response
-from sinuous.papers.hachen2025.hardware_figures import draw
+from sinuous.papers.hachen2025.convergence.experiment import response
+from sinuous.papers.hachen2025.hardware.figures import draw
 from sinuous.papers.hachen2025.runs import held, scenario
 from sinuous.papers.workers import Workers
 from sinuous.recording import Recording

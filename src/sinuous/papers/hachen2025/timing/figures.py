@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from sinuous.papers.experiment import Data
-from sinuous.papers.hachen2025.timing_verdicts import (
+from sinuous.papers.hachen2025.timing.verdicts import (
     BELOW_BOUND,
     OURS,
     PRINTED_BOUND,

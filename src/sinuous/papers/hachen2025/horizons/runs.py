@@ -10,7 +10,7 @@ import numpy as np
 from sinuous.arrays import Array
 from sinuous.bench.loop import no_garbage_collection
 from sinuous.control.mpc import ShapeConstrainedMPC
-from sinuous.papers.hachen2025.horizon_scenes import DeadEnd
+from sinuous.papers.hachen2025.horizons.scenes import DeadEnd
 from sinuous.papers.hachen2025.runs import scenario
 
 ARRIVED = 1e-5  # a tip so close that going on would show nothing new [m]

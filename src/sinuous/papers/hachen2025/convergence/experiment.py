@@ -6,7 +6,7 @@ import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.papers.experiment import Data, Experiment
-from sinuous.papers.hachen2025.convergence_figures import draw
+from sinuous.papers.hachen2025.convergence.figures import draw
 from sinuous.papers.hachen2025.gains import DLS_BEST, DLS_PRINTED
 from sinuous.papers.hachen2025.runs import held, sampled_targets, scenario
 from sinuous.papers.workers import Workers

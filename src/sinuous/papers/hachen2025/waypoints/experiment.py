@@ -8,7 +8,7 @@ from sinuous.arrays import Array, IntArray
 from sinuous.papers.experiment import Data, Experiment
 from sinuous.papers.hachen2025.gains import DLS_BEST, DLS_PRINTED
 from sinuous.papers.hachen2025.runs import scenario
-from sinuous.papers.hachen2025.waypoints_figures import draw
+from sinuous.papers.hachen2025.waypoints.figures import draw
 from sinuous.papers.sketch import sketch
 from sinuous.papers.workers import Workers
 from sinuous.recording import Recording

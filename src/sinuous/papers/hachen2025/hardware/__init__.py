@@ -1,0 +1,1 @@
+"""IV: like the hardware."""

@@ -1,0 +1,1 @@
+"""Longer horizons and dead ends."""

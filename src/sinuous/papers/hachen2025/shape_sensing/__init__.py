@@ -1,0 +1,1 @@
+"""V: the whole body, sensed."""

@@ -1,0 +1,1 @@
+"""III-D, Fig. 9: does it come to rest?"""

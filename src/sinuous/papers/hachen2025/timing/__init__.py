@@ -1,0 +1,1 @@
+"""III-F: the time of a step."""

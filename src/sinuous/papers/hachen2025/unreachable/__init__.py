@@ -1,0 +1,1 @@
+"""III-E: targets outside the zone."""

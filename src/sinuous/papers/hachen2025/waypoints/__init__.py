@@ -1,0 +1,1 @@
+"""III-D: way-points in passages."""
