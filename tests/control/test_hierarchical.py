@@ -299,3 +299,31 @@ def test_a_measurement_that_is_not_finite_holds_the_robot_still(what: str) -> No
     assert np.array_equal(after.c, state.c)
     after, command = controller.step(after, TARGET, good)  # and goes on when it is
     assert command.report.status is Status.TRACKING
+
+
+@pytest.mark.parametrize("what", ["tip", "lengths", "points"])
+@pytest.mark.parametrize("size", [1e30, 1e160, 1e300])
+def test_a_measurement_beyond_all_reason_moves_nothing_that_is_not_finite(
+    what: str, size: float
+) -> None:
+    controller = HierarchicalController(MPC, offset_free=OffsetFree(when=When.ALWAYS))
+    state = controller.init(ROBOT.home)
+    good = measured(state.c)
+    state, _ = controller.step(state, TARGET, good)
+    mad = replace(good, **{what: np.full_like(getattr(good, what), size)})
+    after, command = controller.step(state, TARGET, mad)
+    slowest, fastest = ROBOT.rate_limits.T
+    assert np.all((command.rates >= slowest - ROUNDING) & (command.rates <= fastest + ROUNDING))
+    assert np.all(np.isfinite(after.offset))
+    after, command = controller.step(after, TARGET, good)
+    assert command.report.status is Status.TRACKING
+
+
+@pytest.mark.parametrize("target", [[0.05, 0.0], [0.05, 0.0, 0.16, 0.0], [np.nan, 0.0, 0.16]])
+def test_a_target_that_is_no_place_holds_the_plan_still(target: list[float]) -> None:
+    controller = HierarchicalController(MPC)
+    state = controller.init(ROBOT.home)
+    after, command = controller.step(state, target, measured(state.c))
+    assert command.report.status is Status.HOLDING
+    assert "three finite numbers" in command.report.reason
+    assert np.array_equal(after.c, state.c)

@@ -45,7 +45,8 @@ class HierarchicalController:
     Limits that its sum would break are kept, see `attainable`; the command says how much they
     took.  Without a measurement the plan is on its own.
 
-    A measurement that is not finite is a fault: the robot holds still.
+    A measurement that is not finite is a fault, and so is one that is too large to compute with:
+    the robot holds still, and nothing is learned from it.
 
     Arguments:
         mpc: plans the nominal motion; its `rate_share` is replaced by what `local` leaves
@@ -99,8 +100,23 @@ class HierarchicalController:
         if measured is None:
             return self._planned(state, target)
         if not is_finite(measured):
-            nominal, command = self.planner.hold(state.nominal, "the measurement is not finite")
-            return replace(state, nominal=nominal, past=()), command
+            return self._hold(state, "the measurement is not finite")
+        try:
+            with np.errstate(all="ignore"):
+                after, command = self._fed_back(state, target, measured)
+        except np.linalg.LinAlgError:
+            return self._hold(state, "the measurement cannot be computed with")
+        if not (np.all(np.isfinite(command.rates)) and np.all(np.isfinite(after.offset))):
+            return self._hold(state, "the measurement cannot be computed with")
+        return after, command
+
+    def _hold(self, state: HierarchicalState, reason: str) -> tuple[HierarchicalState, Command]:
+        nominal, command = self.planner.hold(state.nominal, reason)
+        return replace(state, nominal=nominal, past=()), command
+
+    def _fed_back(
+        self, state: HierarchicalState, target: ArrayLike, measured: Measurement
+    ) -> tuple[HierarchicalState, Command]:
         now = self.robot.configuration(measured.lengths)
         past = remember(state.past, now)
         seen = observe(self.robot, measured, past, self.dt)
@@ -115,7 +131,9 @@ class HierarchicalController:
     def _planned(
         self, state: HierarchicalState, target: ArrayLike
     ) -> tuple[HierarchicalState, Command]:
-        aim = np.asarray(target, dtype=float) - state.offset
+        aim = np.asarray(target, dtype=float)
+        if aim.shape == state.offset.shape:  # of any other the plan says that it is no place
+            aim = aim - state.offset
         nominal, command = self.planner.step(state.nominal, aim)
         return replace(state, nominal=nominal), replace(command, offset=state.offset)
 
