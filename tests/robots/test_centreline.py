@@ -18,7 +18,9 @@ SLOPE = 1e-8  # what differences of STEP leave in slopes below one: STEP^2 and 1
 
 def some_shape(line: Centreline, rng: np.random.Generator) -> Bends:
     """Bent differently in every arc, the base tilted."""
-    c = configurations(line.robot, rng, 5)[4]  # type: ignore[arg-type]
+    robot = line.robot
+    assert isinstance(robot, PccRobot)
+    c = configurations(robot, rng, 5)[4]
     model = line.model(c)
     change = 3.0 * rng.normal(size=model.curvature.shape) * line.bends[:, None]
     return Bends(
