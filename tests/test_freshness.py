@@ -47,7 +47,7 @@ def test_the_step_depends_on_the_geometry_it_calls() -> None:
     package = Path(freshness.__file__).parent
     reached = freshness._reached(package / "control" / "step" / "plan.py")
     assert package / "geometry" / "triangle.py" in reached
-    assert package / "robots" / "pcc_second.py" in reached
+    assert package / "robots" / "chain_second.py" in reached
     assert package / "cli" / "main.py" not in reached
 
 

@@ -239,7 +239,7 @@ def curvature_of_limits(robot: PccRobot, c: Array, f: Array, T: Array) -> Array:
     """By c (n, n): -push d2(slack), each limit's push as if it were the only one."""
     H = np.zeros((len(c), len(c)))
     for j, slack in enumerate(robot.bend_slack(c)):
-        theta = robot.bend_limits[0][j]
+        theta = robot.bend_limits.column[j]
         if slack <= NEAR_BEND and np.hypot(c[theta], c[theta + 1]) > STRAIGHT:
             normal = T.T @ robot.bend_slack_jacobian(c)[j]
             push = max(float(normal @ T.T @ f) / float(normal @ normal), 0.0)

@@ -12,7 +12,8 @@ LARGEST_BEND = 1.6  # [rad] of a segment
 
 def poses(robot: PccRobot, rng: np.random.Generator, count: int) -> Iterator[Array]:
     """Configurations (n,): every segment bent anyhow within its limits, and of any length."""
-    theta, slope, offset, _ = robot.bend_limits
+    limits = robot.bend_limits
+    theta, slope, offset = limits.column, limits.slope, limits.offset
     for _ in range(count):
         c = robot.home.copy()
         for name, column in zip(robot.coordinate_names, range(len(c)), strict=True):

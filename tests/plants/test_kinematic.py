@@ -7,7 +7,7 @@ import pytest
 
 from sinuous.arrays import Array, ArrayLike
 from sinuous.plants.kinematic import Disturbance, KinematicPlant
-from sinuous.robots.pcc_kernels import Chain
+from sinuous.robots.chain_kernels import STRAIGHT, Chain
 from sinuous.robots.robot_file import load_robot
 
 DT = 1 / 30  # [s]
@@ -25,6 +25,7 @@ class Transparent:
         self.home = np.zeros(count)
         self.radii = np.ones(count + 1)
         self.chain = Chain(
+            turns=np.array([STRAIGHT]),
             theta_column=np.array([-1]),
             gamma_column=np.array([-1]),
             fixed_length=np.ones(1),

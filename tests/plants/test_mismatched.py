@@ -37,7 +37,7 @@ def go(plant: MismatchedPlant, lengths: Array) -> None:
 
 def bends(robot: PccRobot, c: Array) -> list[Array]:
     """The bend vectors of the segments, as views of c."""
-    return [c[column : column + 2] for column in np.unique(robot.bend_limits[0])]
+    return [c[column : column + 2] for column in np.unique(robot.bend_limits.column)]
 
 
 @pytest.mark.parametrize("name", PRESETS)

@@ -17,7 +17,7 @@ from sinuous.plants.plant import Truth
 from sinuous.plants.recorded import Record, RecordedPlant
 from sinuous.plants.sensors import Accuracy, TipTracker
 from sinuous.plants.shape_estimate import ShapeEstimator, ShapePrior, Strain, TipFix
-from sinuous.robots.centreline import HINGE, Bends, Centreline
+from sinuous.robots.centreline import TILT, Bends, Centreline
 from sinuous.robots.parts import Insertion, Tool
 from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import load_robot
@@ -63,7 +63,7 @@ def bent(robot: PccRobot, seed: int = 0) -> Array:
 def prior_covariance(line: Centreline, model: Bends, prior: ShapePrior) -> Array:
     """As the prior's words say it, element by element."""
     bending = np.flatnonzero(line.bends)
-    K = np.diag([prior.tilt**2] * HINGE + [0.0] * (2 * len(bending)))
+    K = np.diag([prior.tilt**2] * TILT + [0.0] * (2 * len(bending)))
     for a, i in enumerate(bending):
         for b, j in enumerate(bending):
             if line.section[i] != line.section[j]:
@@ -74,14 +74,14 @@ def prior_covariance(line: Centreline, model: Bends, prior: ShapePrior) -> Array
             ]
             apart = np.sqrt(3) * abs(line.middle[i] - line.middle[j]) / prior.correlation
             value = std[0] * std[1] * (1 + apart) * np.exp(-apart)
-            K[HINGE + 2 * a, HINGE + 2 * b] = K[HINGE + 2 * a + 1, HINGE + 2 * b + 1] = value
+            K[TILT + 2 * a, TILT + 2 * b] = K[TILT + 2 * a + 1, TILT + 2 * b + 1] = value
     return K
 
 
 def changed(line: Centreline, model: Bends, x: Array) -> Bends:
     curvature = model.curvature.copy()
-    curvature[line.bends] += x[HINGE:].reshape(-1, 2)
-    return Bends(lengths=model.lengths, curvature=curvature, tilt=model.tilt + x[:HINGE])
+    curvature[line.bends] += x[TILT:].reshape(-1, 2)
+    return Bends(lengths=model.lengths, curvature=curvature, tilt=model.tilt + x[:TILT])
 
 
 def coil_of(line: Centreline, bends: Bends) -> Array:

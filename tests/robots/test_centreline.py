@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from scipy.integrate import solve_ivp
 
 from sinuous.arrays import Array
-from sinuous.robots.centreline import HINGE, Bends, Centreline
+from sinuous.robots.centreline import TILT, Bends, Centreline
 from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import load_robot
 
@@ -59,8 +59,8 @@ def moved(line: Centreline, bends: Bends, column: int, by: float) -> Bends:
     x = np.zeros(line.coordinates)
     x[column] = by
     curvature = bends.curvature.copy()
-    curvature[line.bends] += x[HINGE:].reshape(-1, 2)
-    return Bends(lengths=bends.lengths, curvature=curvature, tilt=bends.tilt + x[:HINGE])
+    curvature[line.bends] += x[TILT:].reshape(-1, 2)
+    return Bends(lengths=bends.lengths, curvature=curvature, tilt=bends.tilt + x[:TILT])
 
 
 def test_the_coil_is_where_it_sits_on_the_tip() -> None:

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from scipy.linalg import block_diag, expm
 
 from sinuous.arrays import Array
-from sinuous.robots import pcc_series
+from sinuous.robots import arc_series
 from sinuous.robots.parts import CableConvention, Insertion, Segment, SpeedLimits, Tool
 from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import load_robot
@@ -82,7 +82,7 @@ def test_coefficients_match_their_closed_forms(w: float) -> None:
     S, C = np.sin(a) / a, 2 * np.sin(a / 2) ** 2 / w
     exact = [S, C, (1 - S) / w, (np.longdouble(0.5) - C) / w]
     lost = 4 * float(np.finfo(np.longdouble).eps) / w
-    for value, expected in zip(pcc_series.coefficients(w), exact, strict=True):
+    for value, expected in zip(arc_series.coefficients(w), exact, strict=True):
         assert abs(value - float(expected)) <= SERIES + lost
 
 

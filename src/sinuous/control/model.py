@@ -1,16 +1,18 @@
 """The numbers of a controller as arrays for the compiled step."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
-from sinuous.arrays import Array, IntArray
+from sinuous.arrays import Array, BoolArray, IntArray
 from sinuous.control.metric import actuator_metric
 from sinuous.control.step import assemble
 from sinuous.control.step.data import Limits, Model
 from sinuous.control.terms import Costs, total_weights
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.robot import Robot
+from sinuous.robots.routing import Routing
 
 ROUNDING = 1e-14  # coefficients below this share of the largest are zero
 
@@ -72,17 +74,16 @@ def make_model(*, robot: Robot, zone: SafeZone, costs: Costs, settings: Settings
 def _limits(robot: Robot, inverse: Array, settings: Settings) -> Limits:
     """Limits of actuators, and of coordinates that no actuator's limits imply."""
     own = np.flatnonzero(np.any(np.isfinite(robot.coordinate_limits), axis=1))
-    lengths = robot.lengths_jacobian(robot.home)
-    A = np.concatenate([lengths, np.eye(len(robot.home))[own]])
-    offset = robot.lengths(robot.home) - lengths @ robot.home
-    scaled = A @ inverse
+    picked = np.eye(len(robot.home))[own]
+    scaled = np.concatenate([robot.lengths_jacobian(robot.home), picked]) @ inverse
+    moving = np.concatenate([_moving(robot.routing), picked != 0.0])
     low, high = np.concatenate([robot.length_limits, robot.coordinate_limits[own]]).T
     slowest, fastest = robot.rate_limits.T * settings.rate_share * settings.dt
     return assemble.limits(
-        _plain(A),
-        np.concatenate([offset, np.zeros(len(own))]),
+        robot.routing,
+        own,
         _plain(scaled),
-        *_spans(scaled),
+        *_spans(moving, inverse),
         _plain(low),
         _plain(high),
         _plain(slowest),
@@ -97,7 +98,21 @@ def _plain(values: Array) -> Array:
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
-def _spans(rows: Array) -> tuple[IntArray, IntArray]:
-    """First and one past the last coefficient of every row that is not zero."""
-    used = np.abs(rows) > ROUNDING * np.max(np.abs(rows))
-    return np.argmax(used, axis=1), rows.shape[1] - np.argmax(used[:, ::-1], axis=1)
+def _moving(routing: Routing) -> BoolArray:
+    """Which coordinates change which lengths (P, n), somewhere."""
+    moving = routing.A != 0.0
+    for k, (first, last) in enumerate(pairwise(routing.first)):
+        for column in routing.column[first:last]:
+            moving[k, column : column + 2] = True
+    return moving
+
+
+def _spans(moving: BoolArray, inverse: Array) -> tuple[IntArray, IntArray]:
+    """First and one past the last coefficient of every row in y that can be other than zero.
+
+    Arguments:
+        moving: which coordinates change the row's value (K, n)
+        inverse: M^-1 (n, n)
+    """
+    used = moving @ (np.abs(inverse) > ROUNDING * np.max(np.abs(inverse)))
+    return np.argmax(used, axis=1), used.shape[1] - np.argmax(used[:, ::-1], axis=1)

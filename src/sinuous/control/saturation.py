@@ -3,7 +3,10 @@
 import numpy as np
 
 from sinuous.arrays import Array
+from sinuous.robots.bending import bends
 from sinuous.robots.robot import Robot
+
+ROUNDING = 1e-12  # [rad] by which a bend may exceed its limit
 
 # Clipping lengths and going back to a robot's shape disturb each other a little: repeat.
 ROUNDS = 3
@@ -45,12 +48,12 @@ def speed_share(robot: Robot, rates: Array, base: Array | float = 0.0) -> float:
 
 def _unbent(robot: Robot, c: Array, now: Array) -> Array:
     """The configuration with no segment bent beyond its limit, or farther beyond than it is now."""
-    theta, slope, offset, pitch = robot.bend_limits
-    excess = np.maximum(-robot.bend_slack(now) / pitch, 0.0)
+    limits = robot.bend_limits
+    excess = np.maximum(-robot.bend_slack(now) / limits.pitch, 0.0)
     c = c.copy()
-    for j, column in enumerate(theta):
-        bend = float(np.hypot(c[column], c[column + 1]))
-        limit = max(float(slope[j] @ c + offset[j]), 0.0) + excess[j]
-        if bend > limit:
-            c[column : column + 2] *= limit / bend
+    for j, column in enumerate(limits.column):
+        limit = max(float(limits.slope[j] @ c + limits.offset[j]), 0.0) + excess[j]
+        # The bend of a joint is not linear in the share of its angles: a few rounds settle it.
+        while (bent := float(bends(limits, c)[j])) > limit + ROUNDING:
+            c[column : column + 2] *= limit / bent
     return c

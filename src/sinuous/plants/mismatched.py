@@ -7,7 +7,8 @@ import numpy as np
 from sinuous.arrays import Array, ArrayLike
 from sinuous.measurement import Measurement
 from sinuous.plants.plant import Truth
-from sinuous.robots.centreline import HINGE, Bends, Centreline
+from sinuous.robots.centreline import TILT, Bends, Centreline
+from sinuous.robots.chain_kernels import ARC
 from sinuous.robots.robot import Robot
 
 # Distinguishes the random numbers of a robot's making from others with the same seed.
@@ -102,7 +103,7 @@ class MismatchedPlant:
         self.robot = robot
         self._mismatch = mismatch or Mismatch()
         self._line = Centreline(robot=robot)
-        self._bent = np.flatnonzero(robot.chain.theta_column >= 0)
+        self._bent = np.flatnonzero(robot.chain.turns == ARC)
         self._draw(np.random.default_rng((seed, STREAM)))
         self._play = np.where(self._is_cable(), 0.5 * self._mismatch.play, 0.0)
         self._sag = self._compliance(robot.home)
@@ -161,7 +162,7 @@ class MismatchedPlant:
         return Bends(
             lengths=lengths[line.section] * line.share,
             curvature=curvature * uneven[:, None],
-            tilt=np.array(self._mismatch.base_tilt, dtype=float).reshape(HINGE),
+            tilt=np.array(self._mismatch.base_tilt, dtype=float).reshape(TILT),
         )
 
     def _bend(self, model: Array) -> Array:

@@ -13,7 +13,7 @@ import numpy as np
 
 from sinuous.arrays import Array, IntArray
 from sinuous.plants import shape_kernels
-from sinuous.robots.centreline import HINGE, Bends, Centreline
+from sinuous.robots.centreline import TILT, Bends, Centreline
 
 # Gauss-Newton ends when the coil moves less than this [m], far below any tracker's noise.
 CONVERGED = 1e-7
@@ -123,10 +123,10 @@ class ShapeEstimator:
             for mode in _modes(line.middle[self._bending[own]], prior.correlation):
                 for axis in range(2):
                     column = np.zeros(line.coordinates)
-                    column[HINGE + 2 * own + axis] = mode
+                    column[TILT + 2 * own + axis] = mode
                     owners.append(int(self._bending[own[0]]))
                     columns.append(column)
-        tilts = np.eye(HINGE, line.coordinates)
+        tilts = np.eye(TILT, line.coordinates)
         self._modes = np.concatenate([tilts, np.array(columns)]).T.copy()
         self._owner = np.array(owners)  # an arc of the mode's segment
 
@@ -161,12 +161,12 @@ class ShapeEstimator:
         """Standard deviation of every mode (r,): tilts [rad], then curvatures [1/m]."""
         bent = np.hypot(*model.curvature[self._owner].T)
         curvature = np.hypot(self._prior.floor, self._prior.share * bent)
-        return np.concatenate([np.full(HINGE, self._prior.tilt), curvature])
+        return np.concatenate([np.full(TILT, self._prior.tilt), curvature])
 
     def _bent(self, model: Bends, x: Array) -> Bends:
         curvature = model.curvature.copy()
-        curvature[self._bending] += x[HINGE:].reshape(-1, 2)
-        return Bends(lengths=model.lengths, curvature=curvature, tilt=model.tilt + x[:HINGE])
+        curvature[self._bending] += x[TILT:].reshape(-1, 2)
+        return Bends(lengths=model.lengths, curvature=curvature, tilt=model.tilt + x[:TILT])
 
     def _readings(
         self,
@@ -180,7 +180,7 @@ class ShapeEstimator:
         """Derivative H (m, r) of what is read and what is left of it (m,), over its deviation."""
         H, left = [np.zeros((0, bases.shape[1]))], [np.zeros(0)]
         if strain is not None:
-            column = HINGE + 2 * np.searchsorted(self._bending, strain.arcs)
+            column = TILT + 2 * np.searchsorted(self._bending, strain.arcs)
             std = np.sqrt(strain.variance).ravel()
             H.append(bases[(column[:, None] + np.arange(2)).ravel()] / std[:, None])
             left.append((strain.curvature - bends.curvature[strain.arcs]).ravel() / std)

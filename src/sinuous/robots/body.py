@@ -1,6 +1,6 @@
 """The body as a chain of sections, and the points on it that are guarded.
 
-A section is an arc or a straight stretch. Between two guarded points on it the body is
+A section is an arc, a straight stretch or a hinge. Between two guarded points on it the body is
 covered by keeping a little more distance at the points themselves (notes B7).
 """
 
@@ -11,7 +11,7 @@ from math import ceil
 import numpy as np
 
 from sinuous.arrays import Array, BoolArray, IntArray
-from sinuous.robots.pcc_kernels import Chain
+from sinuous.robots.chain_kernels import ARC, HINGE, STRAIGHT, Chain
 
 # A section this little longer than a whole number of spacings is not cut once more.
 ROUNDING = 1e-9
@@ -25,21 +25,36 @@ class Section:
         name: in words
         longest: largest arc length [m]
         radius: of the body [m]
-        disks: at equal distances, the last one at its end
+        disks: at equal distances, the last one at its end, or none
         curvature: largest [1/m]
-        theta: column of theta_x in the configuration, -1 if it is straight
+        theta: first column of what turns its end, -1 if it is straight
+        hinge: whether it turns about its direction by one angle, and has no length
         gamma: column of its length, -1 if that is fixed
-        direction: unit vector in which it starts, in its own frame; z if it bends
+        direction: unit vector in which it starts, in its own frame; z if it bends,
+            the axis of a hinge
     """
 
     name: str
     longest: float
     radius: float
-    disks: int = 1
+    disks: int = 0
     curvature: float = 0.0
     theta: int = -1
+    hinge: bool = False
     gamma: int = -1
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+
+    @property
+    def turns(self) -> int:
+        """Number of coordinates that turn its end, see `chain_kernels.Chain`."""
+        bends = HINGE if self.hinge else ARC
+        return STRAIGHT if self.theta < 0 else bends
+
+    def pieces(self, spacing: float) -> int:
+        """Arcs between guarded points at most `spacing` [m] apart, a multiple of its disks."""
+        parts = max(self.disks, 1)
+        arcs = parts * max(1, ceil(self.longest / parts / spacing - ROUNDING))
+        return 0 if self.hinge else arcs
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -51,18 +66,16 @@ class Body:
 
     @cached_property
     def pieces(self) -> list[int]:
-        """Arcs between guarded points in every section, a multiple of its disks."""
-        return [
-            s.disks * max(1, ceil(s.longest / s.disks / self.spacing - ROUNDING))
-            for s in self.sections
-        ]
+        """Arcs between guarded points in every section."""
+        return [section.pieces(self.spacing) for section in self.sections]
 
     @cached_property
     def chain(self) -> Chain:
         """What the kernels need."""
-        steps = [np.arange(1, count + 1) / count for count in self.pieces]
+        steps = [np.arange(1, count + 1) / max(count, 1) for count in self.pieces]
         owner = np.repeat(np.arange(len(self.sections)), self.pieces)
         return Chain(
+            turns=np.array([s.turns for s in self.sections]),
             theta_column=np.array([s.theta for s in self.sections]),
             gamma_column=np.array([s.gamma for s in self.sections]),
             fixed_length=np.array([s.longest for s in self.sections]),
@@ -73,8 +86,10 @@ class Body:
 
     @cached_property
     def movable(self) -> BoolArray:
-        """Which points any actuator can move (S,): all but the first."""
-        return np.arange(1 + sum(self.pieces)) > 0
+        """Which points any actuator can move (S,): those after where the first section moves."""
+        first = next(m for m, s in enumerate(self.sections) if s.turns or s.gamma >= 0)
+        section, fraction = self.chain.section, self.chain.fraction
+        return (section > first) | ((section == first) & (fraction > 0.0))
 
     @cached_property
     def radii(self) -> Array:
@@ -83,11 +98,11 @@ class Body:
 
     @cached_property
     def disk_indices(self) -> IntArray:
-        """Which of the guarded points are disks of a bending section (D,)."""
+        """Which of the guarded points are disks (D,)."""
         indices, start = list[int](), 0
         for section, count in zip(self.sections, self.pieces, strict=True):
-            step = count // section.disks
-            if section.theta >= 0:
+            if section.disks:
+                step = count // section.disks
                 indices += range(start + step, start + count + 1, step)
             start += count
         return np.array(indices, dtype=np.int64)
@@ -98,7 +113,8 @@ class Body:
         Between two points an arc of length D and curvature k stays within the balls of
         radius sqrt((rho + margin)^2 + (D/2)^2) + k D^2 / 8 around them.
         """
-        arcs = [s.longest / count for s, count in zip(self.sections, self.pieces, strict=True)]
+        counts = [max(count, 1) for count in self.pieces]  # a hinge has no arcs, and no length
+        arcs = [s.longest / count for s, count in zip(self.sections, counts, strict=True)]
         half = self._at_points([arc / 2 for arc in arcs])
         sagitta = self._at_points(
             [s.curvature * arc**2 / 8 for s, arc in zip(self.sections, arcs, strict=True)]

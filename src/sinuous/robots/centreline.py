@@ -1,7 +1,7 @@
 """The centre line of a robot as a chain of short arcs, each with its own curvature.
 
 A model bends every segment evenly; a real robot does not. Cut at its guarded points, any robot
-is a chain of short arcs, and as such `pcc_kernels` already knows its kinematics and their
+is a chain of short arcs, and as such `chain_kernels` already knows its kinematics and their
 derivative. In front stands a hinge, an arc of no length, by which the base can be tilted;
 behind may stand a rigid coil.
 
@@ -16,11 +16,11 @@ from math import hypot
 import numpy as np
 
 from sinuous.arrays import Array, BoolArray, IntArray
-from sinuous.robots import pcc_kernels
-from sinuous.robots.pcc_kernels import Chain
+from sinuous.robots import chain_kernels
+from sinuous.robots.chain_kernels import ARC, STRAIGHT, Chain
 from sinuous.robots.robot import Robot
 
-HINGE = 2  # coordinates of the base, before those of the arcs
+TILT = 2  # coordinates of the base, before those of the arcs
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,7 +60,7 @@ class Centreline:
     @cached_property
     def bends(self) -> BoolArray:
         """Which arcs can bend (A,)."""
-        return self.robot.chain.theta_column[self.section] >= 0
+        return self.robot.chain.turns[self.section] == ARC
 
     @cached_property
     def share(self) -> Array:
@@ -76,7 +76,7 @@ class Centreline:
     @cached_property
     def coordinates(self) -> int:
         """Number of coordinates: the tilt, then x and y of every arc that bends."""
-        return HINGE + 2 * int(np.count_nonzero(self.bends))
+        return TILT + 2 * int(np.count_nonzero(self.bends))
 
     # --- what the model says -------------------------------------------------------------
 
@@ -87,8 +87,8 @@ class Centreline:
 
     def section_bends(self, c: Array) -> Array:
         """Bend vectors (M, 2) [rad] of the sections by the model; zero where rigid."""
-        theta = self.robot.chain.theta_column
-        return np.where((theta < 0)[:, None], 0.0, c[theta[:, None] + np.arange(2)])
+        theta, arc = self.robot.chain.theta_column, self.robot.chain.turns == ARC
+        return np.where(arc[:, None], c[np.where(arc, theta, 0)[:, None] + np.arange(2)], 0.0)
 
     def model(self, c: Array) -> Bends:
         """The shape of a configuration (n,) by the model: every section bends evenly."""
@@ -96,7 +96,7 @@ class Centreline:
         return Bends(
             lengths=lengths[self.section] * self.share,
             curvature=self.curvature(self.section_bends(c), lengths),
-            tilt=np.zeros(HINGE),
+            tilt=np.zeros(TILT),
         )
 
     def curvature(self, bends: Array, lengths: Array) -> Array:
@@ -117,7 +117,7 @@ class Centreline:
         chain, x = self._chain(bends.lengths), self._coordinates(bends)
         sections = len(chain.theta_column)
         R, p = np.empty((sections + 1, 3, 3)), np.empty((sections + 1, 3))
-        pcc_kernels.frames(chain, self.robot.T_w_b, x, R, p)
+        chain_kernels.frames(chain, self.robot.T_w_b, x, R, p)
         last = len(bends.lengths) + 2
         return R[1:last], p[1:last]
 
@@ -132,9 +132,9 @@ class Centreline:
             np.empty((len(chain.section), 3)),
             np.empty((len(chain.section), 3, len(x))),
         )
-        pcc_kernels.points(chain, T, x, points)
-        pcc_kernels.points_jacobian_batch(chain, T, x[None], jacobian[None])
-        jacobian[:, :, HINGE:] *= np.repeat(bends.lengths[self.bends], 2)
+        chain_kernels.points(chain, T, x, points)
+        chain_kernels.points_jacobian_batch(chain, T, x[None], jacobian[None])
+        jacobian[:, :, TILT:] *= np.repeat(bends.lengths[self.bends], 2)
         return points, jacobian
 
     def _coordinates(self, bends: Bends) -> Array:
@@ -148,6 +148,7 @@ class Centreline:
         theta, direction = self._rows
         sections = np.arange(len(theta))
         return Chain(
+            turns=np.where(theta < 0, STRAIGHT, ARC),
             theta_column=theta,
             gamma_column=np.full(len(theta), -1),
             fixed_length=np.concatenate([[0.0], lengths, [reach]]),
@@ -160,7 +161,7 @@ class Centreline:
     def _rows(self) -> tuple[IntArray, Array]:
         """First column and direction of the hinge, the arcs and the coil."""
         arcs = np.full(len(self.section), -1)
-        arcs[self.bends] = HINGE + 2 * np.arange(np.count_nonzero(self.bends))
+        arcs[self.bends] = TILT + 2 * np.arange(np.count_nonzero(self.bends))
         theta = np.concatenate([[0], arcs, [-1]])
         reach = hypot(*self.coil)
         coil = np.array(self.coil) / reach if reach > 0.0 else np.array([0.0, 0.0, 1.0])

@@ -15,14 +15,13 @@ from typing import Self
 import numpy as np
 
 from sinuous.arrays import Array, ArrayLike, BoolArray, IntArray
-from sinuous.robots import pcc_kernels, pcc_second
+from sinuous.robots import bending, chain_kernels, chain_second, routing
+from sinuous.robots.bending import BendLimits
 from sinuous.robots.body import Body, Section
+from sinuous.robots.chain_kernels import Chain
 from sinuous.robots.layout import Layout
 from sinuous.robots.parts import CableConvention, Insertion, Segment, SpeedLimits, Tool
-from sinuous.robots.pcc_kernels import Chain
-
-# Bends smaller than this have no direction worth naming: the slack's gradient ignores them.
-STRAIGHT = 1e-9
+from sinuous.robots.routing import Routing
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -106,6 +105,15 @@ class PccRobot:
         """Derivative (P, n) of the lengths; constant, because they are affine in c."""
         return self._layout.length_map[0]
 
+    @property
+    def routing(self) -> Routing:
+        """The cables as plain arrays: no joints to cross."""
+        return self._routing
+
+    @cached_property
+    def _routing(self) -> Routing:
+        return routing.affine(*self._layout.length_map)
+
     def configuration(self, lengths: ArrayLike) -> Array:
         """Configuration (..., n) of actuator lengths (..., P).
 
@@ -161,7 +169,7 @@ class PccRobot:
 
     @property
     def chain(self) -> Chain:
-        """The body as plain arrays, what compiled controllers read; see `pcc_kernels`."""
+        """The body as plain arrays, what compiled controllers read; see `chain_kernels`."""
         return self._body.chain
 
     @property
@@ -191,14 +199,14 @@ class PccRobot:
         """Guarded points (..., S, 3) in the world frame [m], the base first, the tip last."""
         flat, shape = self._flat(c)
         out = np.empty((len(flat), len(self.radii), 3))
-        pcc_kernels.points_batch(self.chain, self.T_w_b, flat, out)
+        chain_kernels.points_batch(self.chain, self.T_w_b, flat, out)
         return out.reshape(*shape, *out.shape[1:])
 
     def points_jacobian(self, c: ArrayLike) -> Array:
         """Derivative (..., S, 3, n) of the points by the configuration, analytic."""
         flat, shape = self._flat(c)
         out = np.empty((len(flat), len(self.radii), 3, flat.shape[1]))
-        pcc_kernels.points_jacobian_batch(self.chain, self.T_w_b, flat, out)
+        chain_kernels.points_jacobian_batch(self.chain, self.T_w_b, flat, out)
         return out.reshape(*shape, *out.shape[1:])
 
     def tip(self, c: ArrayLike) -> Array:
@@ -212,7 +220,7 @@ class PccRobot:
         T = np.tile(np.eye(4), (len(flat), 1, 1))
         R, p = np.empty((sections + 1, 3, 3)), np.empty((sections + 1, 3))
         for pose, one in zip(T, flat, strict=True):
-            pcc_kernels.frames(self.chain, self.T_w_b, one, R, p)
+            chain_kernels.frames(self.chain, self.T_w_b, one, R, p)
             pose[:3, :3], pose[:3, 3] = R[-1], p[-1]
         return T.reshape(*shape, 4, 4)
 
@@ -222,10 +230,10 @@ class PccRobot:
         sections, n = len(self._body.sections), len(value)
         R, p = np.empty((sections + 1, 3, 3)), np.empty((sections + 1, 3))
         ends, spins = np.empty((sections, 3, 3)), np.empty((sections, 3, 2))
-        pcc_kernels.chain_derivative(self.chain, self.T_w_b, value, R, p, ends, spins)
+        chain_kernels.chain_derivative(self.chain, self.T_w_b, value, R, p, ends, spins)
         acting = np.flatnonzero(np.any(forces, axis=1))
-        out, scratch = np.empty((n, n)), np.empty(pcc_second.scratch_size(sections, n))
-        pcc_second.curvature(
+        out, scratch = np.empty((n, n)), np.empty(chain_second.scratch_size(sections, n))
+        chain_second.curvature(
             self.chain, value, R, p, ends, spins, acting, forces[acting], len(acting), scratch, out
         )
         return out
@@ -237,12 +245,12 @@ class PccRobot:
     # --- bend limits ---------------------------------------------------------------------
 
     @property
-    def bend_limits(self) -> tuple[IntArray, Array, Array, Array]:
-        """Column of theta_x, map (J, n) and offset (J,) of the largest bend, pitch radius."""
+    def bend_limits(self) -> BendLimits:
+        """Largest bends (20), in cable travel."""
         return self._bend_limits
 
     @cached_property
-    def _bend_limits(self) -> tuple[IntArray, Array, Array, Array]:
+    def _bend_limits(self) -> BendLimits:
         thetas, slopes, offsets, pitches = list[int](), list[Array](), list[float](), list[float]()
         for segment, (theta, gamma) in zip(self.segments, self._layout.columns, strict=True):
             for slope, offset in segment.bend_planes:
@@ -253,22 +261,18 @@ class PccRobot:
                 slopes.append(row)
                 offsets.append(offset + (0.0 if gamma >= 0 else slope * segment.home_length))
                 pitches.append(max(segment.pitch_radii))
-        return np.array(thetas), np.array(slopes), np.array(offsets), np.array(pitches)
+        return BendLimits(
+            column=np.array(thetas),
+            is_joint=np.zeros(len(thetas), dtype=np.bool_),
+            slope=np.array(slopes),
+            offset=np.array(offsets),
+            pitch=np.array(pitches),
+        )
 
     def bend_slack(self, c: ArrayLike) -> Array:
         """Cable travel left (..., J) [m] until a segment's bend limit (20): r (limit - |theta|)."""
-        value = np.asarray(c, dtype=float)
-        theta, slope, offset, pitch = self._bend_limits
-        bend = np.hypot(value[..., theta], value[..., theta + 1])
-        return pitch * (value @ slope.T + offset - bend)
+        return bending.slack(self._bend_limits, np.asarray(c, dtype=float))
 
     def bend_slack_jacobian(self, c: ArrayLike) -> Array:
         """Derivative (J, n) of the bend slack at one configuration (n,)."""
-        value = np.asarray(c, dtype=float)
-        theta, slope, _, pitch = self._bend_limits
-        bend = np.hypot(value[theta], value[theta + 1])
-        rows, inverse = np.arange(len(theta)), 1.0 / np.where(bend > STRAIGHT, bend, np.inf)
-        jacobian = slope.copy()
-        for k in range(2):
-            jacobian[rows, theta + k] -= value[theta + k] * inverse
-        return pitch[:, None] * jacobian
+        return bending.slack_jacobian(self._bend_limits, np.asarray(c, dtype=float))

@@ -3,14 +3,17 @@
 from typing import Protocol, Self
 
 from sinuous.arrays import Array, ArrayLike, BoolArray, IntArray
-from sinuous.robots.pcc_kernels import Chain
+from sinuous.robots.bending import BendLimits
+from sinuous.robots.chain_kernels import Chain
+from sinuous.robots.routing import Routing
 
 
 class Robot(Protocol):
     """A continuum robot as an immutable value; c (..., n) is its configuration.
 
-    Actuator lengths are affine or smooth in c and satisfy the robot's coupling rules
-    (paper B eq. 19) identically, so the configuration has no equality constraints.
+    Actuator lengths are smooth in c, affine but for the joints that cables cross, and satisfy
+    the robot's coupling rules (paper B eq. 19) identically, so the configuration has no equality
+    constraints.
     Points and tip are in the world frame, which is the frame of the mesh.
     """
 
@@ -66,9 +69,13 @@ class Robot(Protocol):
         ...
 
     @property
-    def bend_limits(self) -> tuple[IntArray, Array, Array, Array]:
-        """Limits |theta| <= slope c + offset: column of theta_x (J,), slope (J, n) and offset
-        (J,) of the largest bend [rad], and the pitch radius (J,) [m] that makes it cable travel."""
+    def routing(self) -> Routing:
+        """The cables as plain arrays: what compiled controllers read."""
+        ...
+
+    @property
+    def bend_limits(self) -> BendLimits:
+        """How far its segments or joints may be bent."""
         ...
 
     @property
@@ -115,7 +122,7 @@ class Robot(Protocol):
         ...
 
     def lengths_jacobian(self, c: ArrayLike) -> Array:
-        """Their derivative by c (P, n)."""
+        """Their derivative (P, n) at one configuration (n,)."""
         ...
 
     def configuration(self, lengths: ArrayLike) -> Array:

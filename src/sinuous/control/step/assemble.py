@@ -5,7 +5,8 @@ from sinuous.compiled import kernel
 from sinuous.control.step.data import Aims, Bends, Body, Limits, Model, Rules, Scale
 from sinuous.geometry.bvh import ZoneArrays
 from sinuous.geometry.grid import Grid
-from sinuous.robots.pcc_kernels import Chain
+from sinuous.robots.chain_kernels import Chain
+from sinuous.robots.routing import Routing
 
 
 @kernel
@@ -16,14 +17,16 @@ def body(
 
 
 @kernel
-def bends(theta: IntArray, slope: Array, offset: Array, pitch: Array) -> Bends:
-    return Bends(theta, slope, offset, pitch)
+def bends(
+    column: IntArray, is_joint: BoolArray, slope: Array, offset: Array, pitch: Array
+) -> Bends:
+    return Bends(column, is_joint, slope, offset, pitch)
 
 
 @kernel
 def limits(
-    A: Array,
-    b: Array,
+    routing: Routing,
+    own: IntArray,
     scaled: Array,
     first: IntArray,
     last: IntArray,
@@ -34,7 +37,7 @@ def limits(
     trust: float,
     tip_step: float,
 ) -> Limits:
-    return Limits(A, b, scaled, first, last, low, high, slowest, fastest, trust, tip_step)
+    return Limits(routing, own, scaled, first, last, low, high, slowest, fastest, trust, tip_step)
 
 
 @kernel

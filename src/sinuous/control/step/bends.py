@@ -1,15 +1,14 @@
 """Curvature of bend limits that the costs push against.
 
-A limit on |theta| is round, its row in the QP straight.  Where the costs push hard against it,
+A limit on a bend is round, its row in the QP straight.  Where the costs push hard against it,
 the step along the tangent is too long: the next one comes back, and the plan hops for ever.
 """
-
-import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.compiled import kernel
 from sinuous.control.step.data import Model, Scratch
 from sinuous.control.step.look import bend_slack
+from sinuous.robots.bending import bend, bend_gradient, bend_hessian
 
 # Limits with less cable travel left than this are leaned on [m].
 NEAR = 1e-4
@@ -28,44 +27,41 @@ def add_bend_curvature(model: Model, c: Array, f: Array, H: Array, scratch: Scra
         c: configuration (n,)
         f, H: gradient (n,) and Hessian (n, n) of the costs, in y
     """
-    bends, n = model.bends, c.size
-    normal, side = scratch.row, scratch.other[1]
-    for j in range(bends.theta.size):
-        theta, pitch = bends.theta[j], bends.pitch[j]
-        bend = float(np.sqrt(c[theta] ** 2 + c[theta + 1] ** 2))
-        if bend < STRAIGHT or bend_slack(bends, j, c) > NEAR:
+    bends, scale, n = model.bends, model.scale, c.size
+    normal = scratch.row
+    for j in range(bends.column.size):
+        column, is_joint = bends.column[j], bends.is_joint[j]
+        x, y = float(c[column]), float(c[column + 1])
+        if bend(is_joint, x, y) < STRAIGHT or bend_slack(bends, j, c) > NEAR:
             continue
-        _derivatives(model, j, c, bend, scratch.other[0], normal, side)
+        _slope(model, j, c, scratch.other[0], normal)
         along, square = 0.0, 0.0
         for r in range(n):
             along += f[r] * normal[r]
             square += normal[r] ** 2
         push = max(along / square, 0.0)
+        xx, xy, yy = bend_hessian(is_joint, x, y)
+        weight = push * bends.pitch[j] * scale.step**2
         for r in range(n):
+            first, second = scale.inverse[column, r], scale.inverse[column + 1, r]
+            by_x, by_y = xx * first + xy * second, xy * first + yy * second
             for k in range(n):
-                H[r, k] += push * pitch / bend * side[r] * side[k]
+                one, other = scale.inverse[column, k], scale.inverse[column + 1, k]
+                H[r, k] += weight * (by_x * one + by_y * other)
 
 
 @kernel
-def _derivatives(
-    model: Model, j: int, c: Array, bend: float, slope: Array, normal: Array, side: Array
-) -> None:
-    """In y: of the slack, and of the bend vector's turn at constant bend.
-
-    Arguments:
-        slope, normal, side: scratch, and where they go (n,)
-    """
+def _slope(model: Model, j: int, c: Array, slope: Array, normal: Array) -> None:
+    """Derivative of the slack (n,) by c, and in y."""
     bends, scale, n = model.bends, model.scale, c.size
-    theta, pitch = bends.theta[j], bends.pitch[j]
-    x, y = c[theta] / bend, c[theta + 1] / bend
+    column, pitch = bends.column[j], bends.pitch[j]
+    x, y = bend_gradient(bends.is_joint[j], float(c[column]), float(c[column + 1]))
     for k in range(n):
         slope[k] = pitch * bends.slope[j, k]
-    slope[theta] -= pitch * x
-    slope[theta + 1] -= pitch * y
+    slope[column] -= pitch * x
+    slope[column + 1] -= pitch * y
     for r in range(n):
         total = 0.0
         for k in range(n):
             total += slope[k] * scale.inverse[k, r]
         normal[r] = scale.step * total
-        turn = x * scale.inverse[theta + 1, r] - y * scale.inverse[theta, r]
-        side[r] = scale.step * turn

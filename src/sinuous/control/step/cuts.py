@@ -23,7 +23,8 @@ from sinuous.control.step.data import (
 from sinuous.control.step.look import bend_slack
 from sinuous.control.step.rows import FIRST, KIND, LAST, LOWER, STAGE, STATE, UPPER
 from sinuous.geometry.bvh import plane
-from sinuous.robots import pcc_kernels
+from sinuous.robots import chain_kernels
+from sinuous.robots.bending import bend, bend_gradient
 
 # Planes of one stage that join at a time, the tightest first: without a bound a body deep in the
 # wall would stall the solver.
@@ -55,7 +56,7 @@ def first_cuts(
     """
     body, rules = model.body, model.rules
     for i in range(old.c.shape[0]):
-        for j in range(model.bends.theta.size):
+        for j in range(model.bends.column.size):
             if bend_slack(model.bends, j, old.c[i]) < NEAR_BEND:
                 count = _add_bend(model, problem, count, i, j, old.c[i], scratch)
         number = 0
@@ -95,7 +96,7 @@ def violated_cuts(
     body, rules, changed = model.body, model.rules, 0
     for i in range(old.c.shape[0]):
         allowed = tolerance if i == 0 else max(tolerance, rules.late)
-        for j in range(model.bends.theta.size):
+        for j in range(model.bends.column.size):
             left = bend_slack(model.bends, j, new.c[i])
             if left < BEND_RESERVE - min(allowed, 0.5 * BEND_RESERVE):
                 k = _find(problem, hard, count, i, BEND, j, -1)
@@ -185,7 +186,7 @@ def _add_plane(
         x, y, z = old.points[i, s, 0], old.points[i, s, 1], old.points[i, s, 2]
         d, nx, ny, nz = plane(body.zone, slot, x, y, z)
     c, J, row = old.c[i], scratch.J, scratch.row
-    pcc_kernels.point_jacobian(
+    chain_kernels.point_jacobian(
         body.chain, s, c, motion.R[i], motion.p[i], motion.ends[i], motion.spins[i], J
     )
     largest = 0.0
@@ -204,14 +205,13 @@ def _add_bend(
 ) -> int:
     """Add the tangent of bend limit j at stage i."""
     bends, row = model.bends, scratch.row
-    theta, pitch = bends.theta[j], bends.pitch[j]
-    x, y = c[theta], c[theta + 1]
-    bend = np.sqrt(x * x + y * y)
+    column, pitch = bends.column[j], bends.pitch[j]
+    gx, gy = bend_gradient(bends.is_joint[j], float(c[column]), float(c[column + 1]))
     for k in range(c.size):
         row[k] = pitch * bends.slope[j, k]
-    if bend > STRAIGHT:
-        row[theta] -= pitch * x / bend
-        row[theta + 1] -= pitch * y / bend
+    if bend(bends.is_joint[j], float(c[column]), float(c[column + 1])) > STRAIGHT:
+        row[column] -= pitch * gx
+        row[column + 1] -= pitch * gy
     largest = 0.0
     for k in range(c.size):
         largest = max(largest, abs(row[k]))

@@ -11,7 +11,8 @@ from sinuous.control.step.rows import Iterate, Pairs, Rows
 from sinuous.geometry.bvh import ZoneArrays
 from sinuous.geometry.grid import Grid
 from sinuous.records import record
-from sinuous.robots.pcc_kernels import Chain
+from sinuous.robots.chain_kernels import Chain
+from sinuous.robots.routing import Routing
 
 # Soft rows of one stage: more are not kept. What is left out joins when a solution violates it,
 # and the safety filter has the last word.
@@ -43,16 +44,18 @@ class Body:
 
 @record
 class Bends:
-    """Bend limits pitch (slope c + offset - |theta|) >= 0, in cable travel.
+    """Bend limits pitch (slope c + offset - bend) >= 0, in cable travel; see `robots.bending`.
 
     Arguments:
-        theta: column of theta_x (J,)
+        column: first of the two coordinates that bend it (J,)
+        is_joint: whether they are the angles of a universal joint (J,)
         slope: (J, n)
         offset: (J,) [rad]
         pitch: (J,) [m]
     """
 
-    theta: IntArray
+    column: IntArray
+    is_joint: BoolArray
     slope: Array
     offset: Array
     pitch: Array
@@ -60,20 +63,21 @@ class Bends:
 
 @record
 class Limits:
-    """Linear limits of configurations and of increments.
+    """Limits of what a configuration is worth, and of its change: lengths, then coordinates.
 
     Arguments:
-        A, b: limited values A c + b: actuator lengths first, then coordinates (K, n), (K,)
-        scaled: A M^-1 (K, n)
-        first, last: span of its rows (K,)
+        routing: the lengths of the actuators (P,)
+        own: columns of the limited coordinates (K - P,)
+        scaled: J M^-1 with the derivative J of the limited values at home (K, n)
+        first, last: span of its rows, anywhere (K,)
         low, high: of the values (K,) [m]
         slowest, fastest: change of the lengths in one step (P,) [m]
         trust: largest change of a length from its prediction [m]
         tip_step: largest way of the tip in one step [m]
     """
 
-    A: Array
-    b: Array
+    routing: Routing
+    own: IntArray
     scaled: Array
     first: IntArray
     last: IntArray
@@ -173,7 +177,7 @@ class Shape:
 
 @record
 class Motion:
-    """Derivatives of the kinematics at the predicted stages; see `pcc_kernels`.
+    """Derivatives of the kinematics at the predicted stages; see `chain_kernels`.
 
     Arguments:
         R, p: frames of the sections (N, M + 1, 3, 3), (N, M + 1, 3)
@@ -246,7 +250,7 @@ class Scratch:
         number: (S,)
         amount: (S,)
         force: (S + 1, 3)
-        second: scratch of `pcc_second.curvature`
+        second: scratch of `chain_second.curvature`
         small: vectors and a matrix of space (5, 3)
     """
 

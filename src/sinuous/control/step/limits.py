@@ -2,16 +2,17 @@
 
 import numpy as np
 
-from sinuous.arrays import Array, IntArray
+from sinuous.arrays import Array
 from sinuous.compiled import kernel
 from sinuous.control.step.data import (
     RATE_LIMIT,
     STATE_LIMIT,
     TIP_SPEED,
-    Meaning,
+    Limits,
     Model,
     Motion,
     Problem,
+    Scratch,
     Shape,
 )
 from sinuous.control.step.rows import (
@@ -26,20 +27,27 @@ from sinuous.control.step.rows import (
     UPPER,
     Rows,
 )
+from sinuous.robots.routing import length_gradient, length_of
 
 
 @kernel
-def hard_rows(model: Model, start: Array, old: Shape, motion: Motion, problem: Problem) -> int:
+def limited(limits: Limits, k: int, c: Array) -> float:
+    """Value of limit k at one configuration (n,): a length, or a coordinate."""
+    P = limits.slowest.size
+    return length_of(limits.routing, k, c) if k < P else float(c[limits.own[k - P]])
+
+
+@kernel
+def hard_rows(
+    model: Model, start: Array, old: Shape, motion: Motion, problem: Problem, scratch: Scratch
+) -> int:
     """Limits of every stage and of the increment that leads to it; returns their number."""
     limits, scale, rows, meaning = model.limits, model.scale, problem.rows, problem.meaning
     K, P, n, count = limits.low.size, limits.slowest.size, start.size, 0
     step = scale.step
     for i in range(old.c.shape[0]):
         for k in range(K):
-            now, predicted = limits.b[k], limits.b[k]
-            for j in range(n):
-                now += limits.A[k, j] * start[j]
-                predicted += limits.A[k, j] * old.c[i, j]
+            now, predicted = limited(limits, k, start), limited(limits, k, old.c[i])
             # A prediction that is out of limits by rounding must not make this infeasible.
             low, high = min(limits.low[k] - predicted, 0.0), max(limits.high[k] - predicted, 0.0)
             if k < P:
@@ -50,18 +58,16 @@ def hard_rows(model: Model, start: Array, old: Shape, motion: Motion, problem: P
                     high = np.inf
                 low, high = max(low, -limits.trust), min(high, limits.trust)
             if np.isfinite(low) or np.isfinite(high):
-                _write_limit(rows, meaning, count, limits.scaled, limits.first, limits.last, k)
+                _write_limit(model, rows, count, k, old.c[i], scratch.row)
                 rows.bound[count, LOWER], rows.bound[count, UPPER] = low / step, high / step
                 rows.place[count, STAGE], rows.place[count, KIND] = i, STATE
                 near = low > -limits.trust or high < limits.trust
                 meaning.what[count], meaning.index[count] = STATE_LIMIT, k if near else -1
                 count += 1
         for k in range(P):
-            moved = 0.0
-            for j in range(n):
-                before = old.c[i - 1, j] if i > 0 else start[j]
-                moved += limits.A[k, j] * (old.c[i, j] - before)
-            _write_limit(rows, meaning, count, limits.scaled, limits.first, limits.last, k)
+            before = old.c[i - 1] if i > 0 else start
+            moved = limited(limits, k, old.c[i]) - limited(limits, k, before)
+            _write_limit(model, rows, count, k, old.c[i], scratch.row)
             # The prediction itself stays allowed when it is out of limits by rounding.
             rows.bound[count, LOWER] = min(limits.slowest[k] - moved, 0.0) / step
             rows.bound[count, UPPER] = max(limits.fastest[k] - moved, 0.0) / step
@@ -73,8 +79,8 @@ def hard_rows(model: Model, start: Array, old: Shape, motion: Motion, problem: P
                 moved = 0.0
                 for j in range(n):
                     for m in range(n):
-                        before = old.c[i - 1, m] if i > 0 else start[m]
-                        moved += motion.tip[i, d, j] * scale.metric[j, m] * (old.c[i, m] - before)
+                        since = old.c[i - 1, m] if i > 0 else start[m]
+                        moved += motion.tip[i, d, j] * scale.metric[j, m] * (old.c[i, m] - since)
                 for j in range(n):
                     rows.a[count, j] = motion.tip[i, d, j] / step
                 rows.place[count, FIRST], rows.place[count, LAST] = 0, n
@@ -91,9 +97,18 @@ def hard_rows(model: Model, start: Array, old: Shape, motion: Motion, problem: P
 
 
 @kernel
-def _write_limit(
-    rows: Rows, meaning: Meaning, count: int, scaled: Array, first: IntArray, last: IntArray, k: int
-) -> None:
-    for j in range(first[k], last[k]):
-        rows.a[count, j] = scaled[k, j]
-    rows.place[count, FIRST], rows.place[count, LAST] = first[k], last[k]
+def _write_limit(model: Model, rows: Rows, count: int, k: int, c: Array, row: Array) -> None:
+    """Write the derivative of limit k at c, in y; it is everywhere the same but for joints."""
+    limits, scale = model.limits, model.scale
+    first, last = limits.first[k], limits.last[k]
+    if limits.routing.column.size == 0 or k >= limits.slowest.size:
+        for j in range(first, last):
+            rows.a[count, j] = limits.scaled[k, j]
+    else:
+        length_gradient(limits.routing, k, c, row)
+        for j in range(first, last):
+            total = 0.0
+            for m in range(row.size):
+                total += row[m] * scale.inverse[m, j]
+            rows.a[count, j] = total
+    rows.place[count, FIRST], rows.place[count, LAST] = first, last

@@ -15,7 +15,7 @@ from sinuous.compiled import kernel
 from sinuous.control.step.bends import add_bend_curvature
 from sinuous.control.step.data import Contacts, Model, Motion, Problem, Scratch, Shape
 from sinuous.control.step.eigen import decompose
-from sinuous.robots import pcc_kernels, pcc_second
+from sinuous.robots import chain_kernels, chain_second
 
 # Damping of the tip's null space [m^2 of tip per m^2 of actuator]: far below the smallest
 # squared gain at which a direction of the tip is still worth steering (1 %).
@@ -40,8 +40,8 @@ def linearise(
     body, aims, scale = model.body, model.aims, model.scale
     c, n, last = old.c[i], old.c.shape[1], body.required.size - 1
     R, p, ends, spins = motion.R[i], motion.p[i], motion.ends[i], motion.spins[i]
-    pcc_kernels.chain_derivative(body.chain, body.T_w_b, c, R, p, ends, spins)
-    pcc_kernels.point_jacobian(body.chain, last, c, R, p, ends, spins, scratch.J)
+    chain_kernels.chain_derivative(body.chain, body.T_w_b, c, R, p, ends, spins)
+    chain_kernels.point_jacobian(body.chain, last, c, R, p, ends, spins, scratch.J)
     tip, free, H, f = motion.tip[i], motion.free[i], problem.H[i], problem.f[i]
     _to_y(scratch.J, scale.inverse, scale.step, tip)
     _project(tip, scale.step, free, scratch.small)
@@ -60,7 +60,7 @@ def linearise(
         for d in range(3):
             scratch.force[number, d] = -contacts.push[i, k, d]
         number += 1
-    pcc_second.curvature(
+    chain_second.curvature(
         body.chain, c, R, p, ends, spins, scratch.number, scratch.force, number, scratch.second,
         scratch.square,
     )  # fmt: skip

@@ -7,7 +7,8 @@ from sinuous.compiled import inner, kernel
 from sinuous.control.step.data import Bends, Body, Scratch, Shape
 from sinuous.geometry.bvh import ZoneArrays
 from sinuous.geometry.grid import Grid, at_least, at_least_from_afar, cell_of, exact
-from sinuous.robots import pcc_kernels
+from sinuous.robots import chain_kernels
+from sinuous.robots.bending import bend
 
 
 @kernel
@@ -33,8 +34,8 @@ def look(
     chain, zone, grid, R, p = body.chain, body.zone, body.grid, scratch.R, scratch.p
     c, points, clearance = shape.c[b], shape.points[b], shape.clearance[b]
     exactly, gradient, slot = shape.exact[b], shape.gradient[b], shape.slot[b]
-    pcc_kernels.frames(chain, body.T_w_b, c, R, p)
-    pcc_kernels.points_of(chain, c, R, p, points)
+    chain_kernels.frames(chain, body.T_w_b, c, R, p)
+    chain_kernels.points_of(chain, c, R, p, points)
     _measure(
         zone, grid, body.required, body.movable, extra, seen, room, points, clearance, exactly,
         gradient, slot, scratch.stack, scratch.keys,
@@ -111,14 +112,14 @@ def bend_slack(bends: Bends, j: int, c: Array) -> float:
     limit = bends.offset[j]
     for k in range(c.size):
         limit += bends.slope[j, k] * c[k]
-    x, y = c[bends.theta[j]], c[bends.theta[j] + 1]
-    return float(bends.pitch[j]) * (limit - np.sqrt(x * x + y * y))
+    x, y = float(c[bends.column[j]]), float(c[bends.column[j] + 1])
+    return float(bends.pitch[j]) * (limit - bend(bends.is_joint[j], x, y))
 
 
 @kernel
 def least_bend_slack(bends: Bends, c: Array) -> float:
     """Least of all bend limits [m]."""
     least = np.inf
-    for j in range(bends.theta.size):
+    for j in range(bends.column.size):
         least = min(least, bend_slack(bends, j, c))
     return least

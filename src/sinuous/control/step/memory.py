@@ -19,7 +19,7 @@ from sinuous.control.step.data import (
 from sinuous.control.step.rows import Rows, new_iterate, new_pairs
 from sinuous.control.step.safety import PIECES
 from sinuous.geometry.bvh import STACK
-from sinuous.robots import pcc_second
+from sinuous.robots import chain_second
 
 
 class Memory(threading.local):
@@ -83,7 +83,7 @@ def new_work(model: Model, horizon: int) -> Work:
         np.zeros(max(S, m) + 1, np.int64),
         np.zeros(S),
         np.zeros((S + 1, 3)),
-        np.zeros(pcc_second.scratch_size(M, n)),
+        np.zeros(chain_second.scratch_size(M, n)),
         np.zeros((5, 3)),
     )
     B = PIECES + 1

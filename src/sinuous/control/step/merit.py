@@ -105,7 +105,7 @@ def merit(
             room = shape.clearance[i, s] - body.required[s] - model.rules.reserve
             if room < 0.0:
                 total -= price * room
-        for j in range(bends.theta.size):
+        for j in range(bends.column.size):
             total += price * max(BEND_RESERVE - bend_slack(bends, j, c), 0.0)
     return total
 

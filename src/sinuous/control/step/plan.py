@@ -159,7 +159,7 @@ def _build(
     for r in range(n):
         for j in range(n):
             work.problem.E[r, j] = scale.E[r, j] / size
-    hard = hard_rows(model, work.start.c[0], old, work.motion, problem)
+    hard = hard_rows(model, work.start.c[0], old, work.motion, problem, work.scratch)
     count = first_cuts(model, old, work.motion, contacts, problem, hard, scratch)
     rows.bound[hard:, PRICE] = PENALTY * (1.0 + largest / size)
     for k in range(count):

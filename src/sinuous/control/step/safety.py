@@ -10,10 +10,11 @@ from sinuous.arrays import Array
 from sinuous.compiled import kernel
 from sinuous.control.step.clock import seconds
 from sinuous.control.step.data import Limits, Model, Work
+from sinuous.control.step.limits import limited
 from sinuous.control.step.look import copy, least_bend_slack, least_slack, look
 from sinuous.geometry.grid import at_least, at_least_from_afar, cell_of, exact
 from sinuous.geometry.segment import is_clear
-from sinuous.robots import pcc_kernels, pcc_second
+from sinuous.robots import chain_kernels, chain_second
 
 # Slack that a recovering body may lose for a moment on its way to a better shape [m].
 WOBBLE = 1e-4
@@ -84,10 +85,8 @@ def _lengths_share(limits: Limits, start: Array, end: Array) -> float:
     """Largest share of a step that actuator rates and lengths allow."""
     share = 1.0
     for k in range(limits.low.size):
-        change, now = 0.0, limits.b[k]
-        for j in range(start.size):
-            change += limits.A[k, j] * (end[j] - start[j])
-            now += limits.A[k, j] * start[j]
+        now = limited(limits, k, start)
+        change = limited(limits, k, end) - now
         if k < limits.fastest.size:
             if share * change > limits.fastest[k]:
                 share = limits.fastest[k] / change
@@ -125,7 +124,7 @@ def _way_is_safe(model: Model, work: Work, floor: float, deadline: float) -> boo
     delta, bound = work.scratch.row, work.scratch.amount
     for j in range(delta.size):
         delta[j] = end.c[0, j] - start.c[0, j]
-    pcc_second.acceleration_bound(body.chain, start.c[0], delta, bound)
+    chain_second.acceleration_bound(body.chain, start.c[0], delta, bound)
     way.ready[:] = False
     for s in range(body.required.size):
         if not body.movable[s]:
@@ -228,5 +227,5 @@ def _place(model: Model, work: Work, k: int) -> None:
     way.ready[k] = True
     for j in range(way.c.size):
         way.c[j] = start.c[0, j] + k / PIECES * (end.c[0, j] - start.c[0, j])
-    pcc_kernels.frames(body.chain, body.T_w_b, way.c, scratch.R, scratch.p)
-    pcc_kernels.points_of(body.chain, way.c, scratch.R, scratch.p, way.points[k])
+    chain_kernels.frames(body.chain, body.T_w_b, way.c, scratch.R, scratch.p)
+    chain_kernels.points_of(body.chain, way.c, scratch.R, scratch.p, way.points[k])

@@ -10,6 +10,7 @@ from sinuous.control.step import plan
 from sinuous.control.step.clock import seconds
 from sinuous.control.step.data import CONTACTS, Contacts, Model, Work
 from sinuous.control.step.interior import OUT_OF_TIME
+from sinuous.control.step.limits import limited
 from sinuous.control.step.look import least_bend_slack, least_slack, look
 from sinuous.control.step.merit import descend
 from sinuous.control.step.plan import Prepared, Solved
@@ -128,8 +129,7 @@ def _outcome(
         error += (tip - target[d]) ** 2
     change = np.zeros(model.limits.slowest.size)
     for k in range(change.size):
-        for j in range(n):
-            change[k] += model.limits.A[k, j] * (end[j] - start[j])
+        change[k] = limited(model.limits, k, end) - limited(model.limits, k, start)
     return Outcome(
         end.copy(), after, shifted, work.end.points[0].copy(), work.end.clearance[0].copy(),
         slack, share, tests, halvings,

@@ -39,7 +39,7 @@ def sampled_targets(robot: Robot, count: int, seed: int) -> Array:
     Segments bend by normally distributed angles and have normally distributed lengths.
     """
     rng, found = np.random.default_rng(seed), list[Array]()
-    bends = robot.bend_limits[0]
+    bends = robot.bend_limits.column
     spread = np.full(len(robot.home), STRETCH)
     spread[bends] = spread[bends + 1] = BEND
     low, high = robot.length_limits.T

@@ -89,7 +89,7 @@ def drive(item: Item) -> dict[str, Any]:
             np.max(np.linalg.norm(np.diff(recording.nominal_tip, axis=0), axis=1)) / dt
         ),
         "tip_speed_limit_m_s": found.mpc.tip_speed,
-        "bend_at_the_end_rad": float(bend(found.robot.bend_limits[0], recording)),
+        "bend_at_the_end_rad": float(bend(found.robot.bend_limits.column, recording)),
         "clearance_m": None if disturbed else recording.actual_clearance.round(6).tolist(),
         "time_s": None if disturbed else recording.time.round(6).tolist(),
         "sketch": None if disturbed else sketch(recording),

@@ -1,4 +1,4 @@
-"""Compiled kinematics of a chain of constant-curvature and straight sections.
+"""Compiled kinematics of a chain of constant-curvature arcs, straight stretches and hinges.
 
 A section bends by the vector theta = (theta_x, theta_y) over its arc length gamma: it
 curves towards (theta_x, theta_y) in the local xy plane, by |theta| in total.  With
@@ -7,9 +7,10 @@ w = |theta|^2, at the fraction u of the arc, in the frame where the section star
     p(u) = gamma (u^2 C theta + u S z),   R(1) = I + S [o] + C [o]^2,
 
 where o = (-theta_y, theta_x, 0), S = sin a / a and C = (1 - cos a) / a^2 with a^2 = u^2 w.
-Both are power series in w (`pcc_series`), so position and derivatives are smooth at the
+Both are power series in w (`arc_series`), so position and derivatives are smooth at the
 straight shape, where the usual (curvature, plane) coordinates are singular.  A straight
-section is the case theta = 0 with its own direction in the place of z.
+section is the case theta = 0 with its own direction in the place of z.  A hinge has no length
+and no points: it turns what follows about its direction by its coordinate.
 
 The kernels that a controller calls write to arrays that it hands over, and allocate nothing.
 Frames are R (M+1, 3, 3) and p (M+1, 3), at the start of every section and after the last.
@@ -21,16 +22,19 @@ import numpy as np
 
 from sinuous.arrays import Array, IntArray
 from sinuous.compiled import inner, kernel
-from sinuous.robots.pcc_series import SERIES_BELOW, closed, coefficients, series
+from sinuous.robots.arc_series import SERIES_BELOW, closed, coefficients, series
+
+STRAIGHT, HINGE, ARC = 0, 1, 2  # numbers of turns
 
 
 class Chain(NamedTuple):
     """The sections of a robot and where on them its points lie, from base to tip."""
 
-    theta_column: IntArray  # (M,) first of two columns of the configuration, -1: straight
+    turns: IntArray  # (M,) coordinates that turn its end: arc 2, hinge 1, straight 0
+    theta_column: IntArray  # (M,) first of their columns in the configuration, -1: none
     gamma_column: IntArray  # (M,) column of the length, -1: fixed
     fixed_length: Array  # (M,) [m]
-    direction: Array  # (M, 3) in which it starts, in its own frame; z if it bends
+    direction: Array  # (M, 3) in which it starts, in its own frame; z of an arc, axis of a hinge
     section: IntArray  # (S,) section of each point, ascending
     fraction: Array  # (S,) fraction of that section's arc
 
@@ -39,7 +43,7 @@ class Chain(NamedTuple):
 def bend(chain: Chain, m: int, c: Array) -> tuple[float, float, float]:
     """Bend vector [rad] and length [m] of section m."""
     theta_x, theta_y = 0.0, 0.0
-    if chain.theta_column[m] >= 0:
+    if chain.turns[m] == ARC:
         theta_x = float(c[chain.theta_column[m]])
         theta_y = float(c[chain.theta_column[m] + 1])
     gamma = float(chain.fixed_length[m])
@@ -60,9 +64,12 @@ def frames(chain: Chain, T_w_b: Array, c: Array, R: Array, p: Array) -> None:
     """Frames of all sections at one configuration (n,)."""
     _first_frame(T_w_b, R, p)
     for m in range(chain.theta_column.size):
-        theta_x, theta_y, _ = bend(chain, m, c)
-        s, k, _, _ = coefficients(theta_x * theta_x + theta_y * theta_y)
-        _next_frame(chain, m, c, s, k, R, p)
+        if chain.turns[m] == HINGE:
+            _turned_frame(chain, m, c, R, p)
+        else:
+            theta_x, theta_y, _ = bend(chain, m, c)
+            s, k, _, _ = coefficients(theta_x * theta_x + theta_y * theta_y)
+            _next_frame(chain, m, c, s, k, R, p)
 
 
 @inner
@@ -85,6 +92,21 @@ def _next_frame(chain: Chain, m: int, c: Array, s: float, k: float, R: Array, p:
         R[m + 1, i, 0] = x - theta_x * way
         R[m + 1, i, 1] = y - theta_y * way
         R[m + 1, i, 2] = s * theta + cosine * z
+
+
+@inner
+def _turned_frame(chain: Chain, m: int, c: Array, R: Array, p: Array) -> None:
+    """The frame after hinge m: R (cos q I + sin q [e] + (1 - cos q) e e') with its axis e."""
+    angle = float(c[chain.theta_column[m]])
+    x, y, z = chain.direction[m, 0], chain.direction[m, 1], chain.direction[m, 2]
+    sine, cosine = np.sin(angle), np.cos(angle)
+    for i in range(3):
+        a, b, d = R[m, i, 0], R[m, i, 1], R[m, i, 2]
+        along = (1.0 - cosine) * (a * x + b * y + d * z)
+        R[m + 1, i, 0] = cosine * a + sine * (b * z - d * y) + along * x
+        R[m + 1, i, 1] = cosine * b + sine * (d * x - a * z) + along * y
+        R[m + 1, i, 2] = cosine * d + sine * (a * y - b * x) + along * z
+        p[m + 1, i] = p[m, i]
 
 
 @inner
@@ -133,10 +155,17 @@ def chain_derivative(
     """Frames, and how the end of every section moves (M, 3, 3) and turns (M, 3, 2), world.
 
     The columns of `ends` belong to (theta_x, theta_y, gamma), those of `spins` to the first
-    two; what a section does not have is zero, except that gamma is always there.
+    two; what a section does not have is zero, except that gamma is always there.  A hinge has
+    its angle in the place of theta_x.
     """
     _first_frame(T_w_b, R, p)
     for m in range(chain.theta_column.size):
+        if chain.turns[m] == HINGE:
+            for i in range(3):
+                ends[m, i, 0], ends[m, i, 1], ends[m, i, 2] = 0.0, 0.0, 0.0
+                spins[m, i, 0], spins[m, i, 1] = axis(chain, m, i, R), 0.0
+            _turned_frame(chain, m, c, R, p)
+            continue
         theta_x, theta_y, gamma = bend(chain, m, c)
         s, k, d, e = coefficients(theta_x * theta_x + theta_y * theta_y)
         ds, dk = gamma * (d - k), gamma * (2.0 * e - d)
@@ -144,7 +173,7 @@ def chain_derivative(
             x, y, z = R[m, i, 0], R[m, i, 1], axis(chain, m, i, R)
             theta = theta_x * x + theta_y * y
             ends[m, i, 2] = k * theta + s * z
-            if chain.theta_column[m] >= 0:
+            if chain.turns[m] == ARC:
                 change, turn = dk * theta + ds * z, d * theta + k * z
                 ends[m, i, 0] = gamma * k * x + theta_x * change
                 ends[m, i, 1] = gamma * k * y + theta_y * change
@@ -169,7 +198,7 @@ def point_jacobian(
         column = chain.theta_column[m]
         if column >= 0:
             rx, ry, rz = x - p[m + 1, 0], y - p[m + 1, 1], z - p[m + 1, 2]
-            for k in range(2):
+            for k in range(chain.turns[m]):
                 sx, sy, sz = spins[m, 0, k], spins[m, 1, k], spins[m, 2, k]
                 out[0, column + k] = ends[m, 0, k] + sy * rz - sz * ry
                 out[1, column + k] = ends[m, 1, k] + sz * rx - sx * rz

@@ -1,14 +1,14 @@
 """Second derivatives of the points of a chain: under held forces, and along a straight way.
 
-Notation as in `pcc_kernels`.
+Notation as in `chain_kernels`.
 """
 
 import numpy as np
 
 from sinuous.arrays import Array, IntArray
 from sinuous.compiled import inner
-from sinuous.robots.pcc_kernels import Chain, axis, bend
-from sinuous.robots.pcc_series import second_coefficients
+from sinuous.robots.arc_series import second_coefficients
+from sinuous.robots.chain_kernels import ARC, HINGE, STRAIGHT, Chain, axis, bend
 
 # Where in the scratch of `curvature` its sums begin, vectors in the world frame.
 FORCE = 0  # sum of the forces beyond the section
@@ -59,8 +59,10 @@ def curvature(
         scratch[i] = 0.0
     for m in range(chain.theta_column.size - 1, -1, -1):
         _gather(chain, m, c, points, forces, count, scratch)
-        if chain.theta_column[m] >= 0:
+        if chain.turns[m] == ARC:
             _own_block(chain, m, c, R, scratch, out)
+        elif chain.turns[m] == HINGE:
+            _hinge_block(chain, m, spins, scratch, out)
         _torques(chain, m, c, R, spins, scratch)
         _mixed_blocks(chain, m, spins, scratch, out)
         _carry(chain, m, c, R, scratch)
@@ -135,6 +137,16 @@ def _own_block(chain: Chain, m: int, c: Array, R: Array, scratch: Array, out: Ar
 
 
 @inner
+def _hinge_block(chain: Chain, m: int, spins: Array, scratch: Array, out: Array) -> None:
+    """Second derivative by the angle of hinge m: sum f . (a x (a x q)) with its axis a."""
+    total = -(scratch[MOMENT] + scratch[MOMENT + 4] + scratch[MOMENT + 8])
+    for i in range(3):
+        for j in range(3):
+            total += spins[m, i, 0] * scratch[MOMENT + 3 * i + j] * spins[m, j, 0]
+    out[chain.theta_column[m], chain.theta_column[m]] = total
+
+
+@inner
 def _along(m: int, column: int, R: Array, at: int, scratch: Array) -> float:
     """Component of the vector that begins there in the scratch along an axis of section m."""
     x, y, z = scratch[at], scratch[at + 1], scratch[at + 2]
@@ -175,11 +187,11 @@ def _torques(chain: Chain, m: int, c: Array, R: Array, spins: Array, scratch: Ar
         zj, zk = axis(chain, m, j, R), axis(chain, m, k, R)
         scratch[TORQUE + 6 + i] = tj * scratch[C0 + k] - tk * scratch[C0 + j]
         scratch[TORQUE + 6 + i] += zj * scratch[S0 + k] - zk * scratch[S0 + j]
-        if chain.theta_column[m] < 0:
+        if chain.turns[m] == STRAIGHT:
             continue
         change = tj * scratch[C1 + k] - tk * scratch[C1 + j]
         change += zj * scratch[S1 + k] - zk * scratch[S1 + j]
-        for a in range(2):
+        for a in range(chain.turns[m]):
             theta = theta_x if a == 0 else theta_y
             arm = R[m, j, a] * scratch[C0 + k] - R[m, k, a] * scratch[C0 + j]
             turn = -trace * spins[m, i, a]
@@ -190,10 +202,10 @@ def _torques(chain: Chain, m: int, c: Array, R: Array, spins: Array, scratch: Ar
 
 @inner
 def _mixed_blocks(chain: Chain, m: int, spins: Array, scratch: Array, out: Array) -> None:
-    """Second derivatives by a coordinate of section m and a bend of one before."""
+    """Second derivatives by a coordinate of section m and a turn of one before."""
     for b in range(3):
         own = chain.gamma_column[m] if b == 2 else chain.theta_column[m]
-        if own < 0:
+        if own < 0 or chain.turns[m] <= b < 2:
             continue
         own += 0 if b == 2 else b
         x, y, z = (
@@ -205,7 +217,7 @@ def _mixed_blocks(chain: Chain, m: int, spins: Array, scratch: Array, out: Array
             column = chain.theta_column[j]
             if column < 0:
                 continue
-            for a in range(2):
+            for a in range(chain.turns[j]):
                 value = spins[j, 0, a] * x + spins[j, 1, a] * y + spins[j, 2, a] * z
                 out[column + a, own] = value
                 out[own, column + a] = value
@@ -238,14 +250,17 @@ def acceleration_bound(chain: Chain, c: Array, delta: Array, out: Array) -> None
 
         |e| <= g u,   |e'| <= h u + g d u^2 / 2,   |e''| <= h d u^2 + g d^2 u^3 / 3.
 
+    A hinge turns about a fixed axis, with d the change of its angle and e = 0.
     A point is the sum of R e over the sections that it passes and its own, each turned by R,
     the product of the rotations before, and (R e)'' = R'' e + 2 R' e' + R e''.
     """
     s, passed, turned = 0, 0.0, 0.0
     for m in range(chain.theta_column.size):
         x, y = 0.0, 0.0
-        if chain.theta_column[m] >= 0:
-            x, y = delta[chain.theta_column[m]], delta[chain.theta_column[m] + 1]
+        if chain.turns[m] >= HINGE:
+            x = delta[chain.theta_column[m]]
+        if chain.turns[m] == ARC:
+            y = delta[chain.theta_column[m] + 1]
         d, g, h = np.sqrt(x * x + y * y), abs(chain.fixed_length[m]), 0.0
         if chain.gamma_column[m] >= 0:
             gamma, change = c[chain.gamma_column[m]], delta[chain.gamma_column[m]]

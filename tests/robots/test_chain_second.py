@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 
 from sinuous.arrays import Array
-from sinuous.robots import pcc_kernels, pcc_second, pcc_series
+from sinuous.robots import arc_series, chain_kernels, chain_second
 from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_file import load_robot
 
@@ -35,7 +35,7 @@ def derivative(robot: PccRobot, c: Array, forces: Array) -> Array:
 def bound(robot: PccRobot, c: Array, delta: Array) -> Array:
     """`acceleration_bound`, with an array that is not clean."""
     out = np.full(len(robot.radii), np.nan)
-    pcc_second.acceleration_bound(robot.chain, c, delta, out)
+    chain_second.acceleration_bound(robot.chain, c, delta, out)
     return out
 
 
@@ -77,18 +77,18 @@ def test_curvature_of_listed_points(robot: PccRobot, seed: int) -> None:
     c, n = configurations(robot, rng, 4)[-1], len(robot.home)
     M, S = robot.chain.theta_column.size, len(robot.radii)
     R, p, ends = np.empty((M + 1, 3, 3)), np.empty((M + 1, 3)), np.empty((M, 3, 3))
-    spins, scratch = np.empty((M, 3, 2)), np.full(pcc_second.scratch_size(M, n), np.nan)
-    pcc_kernels.chain_derivative(robot.chain, robot.T_w_b, c, R, p, ends, spins)
+    spins, scratch = np.empty((M, 3, 2)), np.full(chain_second.scratch_size(M, n), np.nan)
+    chain_kernels.chain_derivative(robot.chain, robot.T_w_b, c, R, p, ends, spins)
     numbers = np.append(rng.integers(0, S, 6), [S - 1, S - 1, -1])
     listed, out = rng.normal(size=(9, 3)), np.full((n, n), np.nan)
     listed[-1] = np.nan
-    pcc_second.curvature(robot.chain, c, R, p, ends, spins, numbers, listed, 8, scratch, out)
+    chain_second.curvature(robot.chain, c, R, p, ends, spins, numbers, listed, 8, scratch, out)
     forces = np.zeros((S, 3))
     np.add.at(forces, numbers[:8], listed[:8])
     expected = robot.points_curvature(c, forces)
     size = np.max(np.abs(robot.points_curvature(c, np.ones((S, 3)))))
     np.testing.assert_allclose(out, expected, rtol=0, atol=ROUNDING * max(size, 1.0))
-    pcc_second.curvature(robot.chain, c, R, p, ends, spins, numbers, listed, 0, scratch, out)
+    chain_second.curvature(robot.chain, c, R, p, ends, spins, numbers, listed, 0, scratch, out)
     assert np.all(out == 0.0)
 
 
@@ -105,7 +105,7 @@ def test_curvature_is_linear_in_the_forces() -> None:
 @pytest.mark.parametrize("w", [0.0, 1e-6, 0.3, 2.0, 9.9, 10.1, 25.0, 60.0])
 def test_second_coefficients_are_derivatives(w: float) -> None:
     """Against the differential equations of sin a / a and (1 - cos a) / a^2, by w = a^2."""
-    s, c, s1, c1, s2, c2 = pcc_series.second_coefficients(w)
+    s, c, s1, c1, s2, c2 = arc_series.second_coefficients(w)
     a = np.sqrt(w)
     assert abs(1.0 - w * c - np.cos(a)) < 10 * SERIES
     assert abs(2.0 * w * s1 + s - np.cos(a)) < 10 * SERIES * max(w, 1.0)
