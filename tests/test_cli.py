@@ -47,7 +47,7 @@ def test_run_tells_how_far_it_is_without_a_terminal(
 ) -> None:
     argv = ("run", FREE, "--out", str(tmp_path), "--set", "path.max_steps=110")
     assert main((*argv, "--set", "path.waypoints_mm=[[0, 80, 100]]")) == 0
-    assert "step 100 of at most 110: " in capsys.readouterr().out
+    assert "sample 100 of at most 110: " in capsys.readouterr().out
 
 
 def test_run_shows_a_bar_on_a_terminal(

@@ -297,9 +297,9 @@ NOT_RECORDINGS = {
     "nonsense": (MAGIC + bytes(range(256)) * 4, "no header"),
     "long record": (MAGIC + struct.pack("<BQ", 12, 2**63), "no header"),
     "other": (_foreign(None), "no header"),
-    "newer": (_foreign({"format": "3"}), "format 3"),
-    "incomplete": (_foreign({"format": "2", "name": '"x"'}), "missing parts"),
-    "not json": (_foreign({"format": "2", "name": "{"}), "missing parts"),
+    "newer": (_foreign({"format": "4"}), "format 4"),
+    "incomplete": (_foreign({"format": "3", "name": '"x"'}), "missing parts"),
+    "not json": (_foreign({"format": "3", "name": "{"}), "missing parts"),
 }
 
 

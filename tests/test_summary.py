@@ -60,7 +60,7 @@ def make_run(steps: int, margin: float = MARGIN, **columns: Any) -> Recording:
     return Recording.from_samples(
         header,
         [
-            Sample(time=0.1 * k, **still | {name: c[k] for name, c in columns.items()})
+            Sample(time=0.1 * (k + 1), **still | {name: c[k] for name, c in columns.items()})
             for k in range(steps)
         ],
     )

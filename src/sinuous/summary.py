@@ -40,7 +40,7 @@ def summarise(recording: Recording, *, wall_time: float | None = None) -> dict[s
         wall_time: how long the run took [s]; without it the real-time factor is None
     """
     error = tip_error(recording.actual_tip, recording.target)
-    simulated = len(recording) * recording.header.dt
+    simulated = float(recording.time[-1]) if len(recording) else 0.0
     return {
         "tip_error_rms_m": _finite(np.sqrt(np.mean(error**2))) if len(error) else None,
         "tip_error_final_m": _finite(error[-1]) if len(error) else None,

@@ -1,5 +1,6 @@
 """How far a run is: a bar on a terminal, lines elsewhere."""
 
+from math import ceil
 from time import perf_counter
 from types import TracebackType
 from typing import Self
@@ -10,6 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from sinuous.recording import Sample
 from sinuous.scenario import Scenario
+from sinuous.session import steps_per_sample
 from sinuous.view.units import MM_PER_M
 
 LINE_EVERY = 100  # steps between two lines where there is no terminal
@@ -25,7 +27,8 @@ class RunProgress:
 
     def __init__(self, console: Console, scenario: Scenario) -> None:
         self._console = console
-        self._steps = sum(leg.steps(scenario.mpc.dt) for leg in scenario.path)
+        dt = scenario.controller.dt
+        self._steps = sum(ceil(leg.steps(dt) / steps_per_sample(dt)) for leg in scenario.path)
         self._done = 0
         self._began = perf_counter()
         self._bar = Progress(
@@ -63,7 +66,7 @@ class RunProgress:
         if self._console.is_terminal:
             self._bar.update(self._task, completed=self._done, note=self._note(sample))
         elif self._done % LINE_EVERY == 0:
-            line = f"step {self._done} of at most {self._steps}: {self._note(sample)}"
+            line = f"sample {self._done} of at most {self._steps}: {self._note(sample)}"
             self._console.print(line, highlight=False, soft_wrap=True)
 
     def _note(self, sample: Sample) -> str:
@@ -71,4 +74,4 @@ class RunProgress:
         speed = self._done / max(perf_counter() - self._began, 1e-9)
         clearance = sample.nominal_clearance * MM_PER_M
         room = f"clearance {clearance:.2f} mm" if np.isfinite(clearance) else "no wall"
-        return f"{speed:.0f} steps/s, tip error {error:.3f} mm, {room}, {sample.status}"
+        return f"{speed:.0f} samples/s, tip error {error:.3f} mm, {room}, {sample.status}"

@@ -10,7 +10,7 @@ from sinuous.arrays import Array, IntArray
 from sinuous.recording.run import Header
 
 METADATA = "sinuous"
-FORMAT = 2
+FORMAT = 3
 """Grows when a recording can no longer be read by older versions."""
 
 ROBOT_FILE = "robot.toml"
@@ -31,6 +31,8 @@ def metadata(header: Header) -> dict[str, str]:
         "versions": header.versions,
         "radii": np.asarray(header.radii, dtype=np.float64).tolist(),
         "disk_indices": np.asarray(header.disk_indices, dtype=np.int64).tolist(),
+        "signals": list(header.signals),
+        "tick": float(header.tick),
     }
     return {key: json.dumps(value, ensure_ascii=False) for key, value in values.items()}
 
@@ -68,4 +70,6 @@ def header(
         zone_parts=parts,
         radii=np.array(values["radii"], dtype=np.float64),
         disk_indices=np.array(values["disk_indices"], dtype=np.int64),
+        signals=tuple(values["signals"]),
+        tick=values["tick"],
     )

@@ -1,6 +1,6 @@
 """Samples as standard ROS 2 messages, and back.
 
-Every topic carries exactly one message per control step. Nothing is stored twice, and only
+Every topic carries exactly one message per sample. Nothing is stored twice, and only
 `/solve_time` depends on the wall clock, so that two runs can be compared topic by topic.
 """
 
@@ -184,6 +184,25 @@ def _vector(name: str, field: str) -> Topic:
     return Topic(name=name, msgtype="std_msgs/msg/Float64MultiArray", encode=encode, decode=decode)
 
 
+def _encode_signals(sample: Sample, header: Header) -> object:
+    """What every tick of the sample had, tick by tick."""
+    values = np.ascontiguousarray(sample.signals, dtype=np.float64)
+    rows, columns = values.shape
+    dimensions = [
+        ros.std_msgs__msg__MultiArrayDimension(label="tick", size=rows, stride=rows * columns),
+        ros.std_msgs__msg__MultiArrayDimension(
+            label=",".join(header.signals), size=columns, stride=columns
+        ),
+    ]
+    layout = ros.std_msgs__msg__MultiArrayLayout(dim=dimensions, data_offset=0)
+    return ros.std_msgs__msg__Float64MultiArray(layout=layout, data=values.ravel())
+
+
+def _decode_signals(message: Any) -> dict[str, Any]:
+    rows, columns = (dimension.size for dimension in message.layout.dim)
+    return {"signals": message.data.reshape(rows, columns)}
+
+
 def _number(name: str, field: str) -> Topic:
     """A topic with one number."""
 
@@ -245,6 +264,12 @@ TOPICS = (
     _number("/local/clipped", "clipped"),
     _position("/offset", "offset"),
     _number("/solve_time", "solve_time"),
+    Topic(
+        name="/signals",
+        msgtype="std_msgs/msg/Float64MultiArray",
+        encode=_encode_signals,
+        decode=_decode_signals,
+    ),
     Topic(
         name="/diagnostics",
         msgtype="diagnostic_msgs/msg/DiagnosticArray",

@@ -1,7 +1,7 @@
 """What is known about a run: its header, one control step, and all steps stacked."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Self
 
@@ -41,11 +41,13 @@ class Header:
     zone_parts: IntArray  # (T,) the `ZonePart` of each triangle
     radii: Array  # (S,) body radius at each of the body points [m]
     disk_indices: IntArray  # (D,) which of the body points are disk centres
+    signals: tuple[str, ...] = ()  # (C,) what is recorded at every tick, each with its unit
+    tick: float = 0.0  # time between ticks [s]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sample:
-    """One control step. Positions are in the mesh's frame."""
+    """One control step, or a few of a fast controller. Positions are in the mesh's frame."""
 
     time: float  # simulated time [s], zero or later
     target: Array  # (3,) [m]
@@ -74,6 +76,8 @@ class Sample:
     planes: int  # triangle planes in the problem
     step_fraction: float  # how much of the planned step the safety filter let through, 0 to 1
     active: tuple[str, ...]  # what limits the robot right now, for people
+
+    signals: Array = field(default_factory=lambda: np.zeros((0, 0)))  # (k, C) of the ticks
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -111,6 +115,18 @@ class Recording:
     step_fraction: Array  # (K,)
     active: tuple[tuple[str, ...], ...]  # (K,)
 
+    signals: Array  # (T, C) of all ticks
+
+    def signal(self, name: str) -> Array:
+        """One signal at all ticks (T,), or all with that stem (T, A): "leader_m_x", "leader_m"."""
+        names = self.header.signals
+        if name in names:
+            return self.signals[:, names.index(name)]
+        columns = [k for k, one in enumerate(names) if one.rpartition("_")[0] == name]
+        if not columns:
+            raise KeyError(f"no signal {name}; there are {', '.join(names)}")
+        return self.signals[:, columns]
+
     def __len__(self) -> int:
         return len(self.time)
 
@@ -146,7 +162,13 @@ class Recording:
             planes=np.array([s.planes for s in samples], dtype=np.int64),
             step_fraction=_stack([s.step_fraction for s in samples], ()),
             active=tuple(s.active for s in samples),
+            signals=_join([s.signals for s in samples if s.signals.size], len(header.signals)),
         )
+
+
+def _join(blocks: Sequence[Array], columns: int) -> Array:
+    """Put blocks of rows one below the other."""
+    return np.concatenate([np.zeros((0, columns)), *blocks])
 
 
 def _stack(rows: Sequence[ArrayLike], shape: tuple[int, ...]) -> Array:

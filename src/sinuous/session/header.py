@@ -25,7 +25,7 @@ def make_header(scenario: Scenario) -> Header:
         actuator_names=robot.actuator_names,
         rate_limits=robot.rate_limits,
         margin=mpc.margin,
-        dt=mpc.dt,
+        dt=scenario.controller.dt,
         seed=scenario.seed,
         versions=versions(),
         zone_triangles=triangles,

@@ -1,20 +1,27 @@
-"""The loop on simulated time: target, controller, plant, sample."""
+"""The loop on simulated time: operator or path, controller, plant, sample."""
 
 from collections.abc import Iterator
+from math import ceil
 
 import numpy as np
 
 from sinuous.arrays import Array
+from sinuous.control.controller import ControllerState
 from sinuous.control.report import Command
 from sinuous.measurement import Measurement
 from sinuous.plants.plant import Truth
 from sinuous.recording import Sample, status_name
 from sinuous.scenario import Scenario
+from sinuous.scenario.path import Leg
+from sinuous.session.guide import guide_of
 from sinuous.session.surface import SurfaceClearance, least_clearance
 
 # A body whose points all move slower than this [m/s], for that many steps, rests.
 REST_SPEED = 1e-4
 REST_STEPS = 10
+
+# Fast controllers are not looked at after every step, but this often [s].
+SAMPLE = 0.01
 
 
 class PlantFailure(Exception):
@@ -22,41 +29,99 @@ class PlantFailure(Exception):
 
 
 def steps(scenario: Scenario) -> Iterator[Sample]:
-    """Yield every step of a scenario; a sample's time is that of the step's end.
+    """Yield every sample of a scenario's run; a sample's time is that of its end.
 
-    A leg ends when its target no longer moves and the body rests, or after its largest
-    number of steps. The wall clock is never read but for the controller's own solve time.
-    The controller sees what sensors yield, never how the plant is.
+    A sample is one control step, or as many as make up `SAMPLE`. A leg ends when its target no
+    longer moves and the body rests, or after its largest number of steps. The wall clock is never
+    read but for the controller's own solve time. The controller sees what sensors yield, never
+    how the plant is.
 
     Raises:
         PlantFailure: if the plant measures something that is not a finite number
     """
-    controller, plant = scenario.controller, scenario.new_plant()
-    dt, measured = controller.dt, None
-    surface = SurfaceClearance.of(scenario.robot, scenario.zone)
-    state, count = controller.init(scenario.first_configuration), 0
+    loop = _Loop(scenario)
     for leg in scenario.path:
-        rest = Rest(dt)
-        for step in range(1, leg.steps(dt) + 1):
-            count += 1
-            before, target = state.c, leg.at(step * dt)
-            state, command = controller.step(state, target, measured)
-            measured = plant.step(command.rates, dt)
-            truth = plant.truth
-            if not _finite(measured, truth):
-                raise PlantFailure
-            yield _sample(
-                scenario,
-                time=count * dt,
-                target=target,
-                c=state.c,
-                command=command,
-                measured=measured,
-                truth=truth,
-                clearance=surface.least(before, state.c),
-            )
-            if rest.after(command.report.points) and step * dt >= leg.moving:
+        yield from loop.leg(leg)
+
+
+class _Loop:
+    """One run: what happens on its clock, from tick to tick."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self._scenario = scenario
+        self._controller, self._plant = scenario.controller, scenario.new_plant()
+        self._dt, start = scenario.controller.dt, scenario.first_configuration
+        self._guide = guide_of(scenario)
+        self._ticks = round(self._dt / self._guide.tick)
+        self._surface = SurfaceClearance.of(scenario.robot, scenario.zone)
+        self._state: ControllerState = self._controller.init(start)
+        self._measured: Measurement | None = None
+        self._tip = scenario.robot.tip(start)
+        self._steps = 0
+
+    def leg(self, leg: Leg) -> Iterator[Sample]:
+        """Yield the samples of one leg."""
+        stride = steps_per_sample(self._dt)
+        rest = Rest(stride * self._dt, self._guide.patience)
+        left, done = leg.steps(self._dt), 0
+        while done < left:
+            last = min(done + stride, left)
+            sample, points = self._sample(leg, done, last)
+            yield sample
+            done = last
+            if rest.after(points) and done * self._dt >= leg.moving:
                 break
+
+    def _sample(self, leg: Leg, first: int, last: int) -> tuple[Sample, Array]:
+        """Take control steps of a leg; what happened, and where the nominal body then is."""
+        clearance, clipped, longest, before = np.inf, 0.0, 0.0, self._state.c
+        command = target = None
+        for step in range(first, last):
+            command, target = self._step(leg, step)
+            clipped = max(clipped, command.clipped)
+            longest = max(longest, command.report.solve_time)
+            if self._scenario.zone.surfaces:
+                after = self._state.c
+                clearance, before = min(clearance, self._surface.least(before, after)), after
+        assert command is not None
+        assert target is not None
+        assert self._measured is not None
+        self._steps += last - first
+        truth = self._plant.truth
+        if not _finite(self._measured, truth):
+            raise PlantFailure
+        sample = _sample(
+            self._scenario,
+            time=self._steps * self._dt,
+            target=target,
+            c=self._state.c,
+            command=command,
+            measured=self._measured,
+            truth=truth,
+            clearance=clearance,
+            clipped=clipped,
+            solve_time=longest,
+            signals=self._guide.take(),
+        )
+        return sample, command.report.points
+
+    def _step(self, leg: Leg, step: int) -> tuple[Command, Array]:
+        """One control step, with its ticks."""
+        tick, ticks = self._guide.tick, self._ticks
+        target = self._guide.target(leg.at(step * self._dt + tick), self._tip)
+        self._state, command = self._controller.step(self._state, target, self._measured)
+        self._measured = self._plant.step(command.rates, tick)
+        for k in range(2, ticks + 1):
+            self._tip = self._measured.tip
+            self._guide.target(leg.at(step * self._dt + k * tick), self._tip)
+            self._measured = self._plant.step(command.rates, tick)
+        self._tip = self._measured.tip
+        return command, target
+
+
+def steps_per_sample(dt: float) -> int:
+    """Control steps in one sample: one, or as many as make up `SAMPLE`."""
+    return max(1, round(SAMPLE / dt))
 
 
 class Rest:
@@ -64,10 +129,12 @@ class Rest:
 
     Arguments:
         dt: time between shapes [s]
+        patience: time for which it must rest, at least [s]
     """
 
-    def __init__(self, dt: float) -> None:
+    def __init__(self, dt: float, patience: float = 0.0) -> None:
         self._largest_step = REST_SPEED * dt
+        self._enough = max(REST_STEPS, ceil(patience / dt))
         self._points: Array | None = None
         self._still = 0
 
@@ -77,7 +144,7 @@ class Rest:
             moved = float(np.max(np.linalg.norm(points - self._points, axis=1)))
             self._still = self._still + 1 if moved < self._largest_step else 0
         self._points = points
-        return self._still >= REST_STEPS
+        return self._still >= self._enough
 
 
 def _finite(measured: Measurement, truth: Truth) -> bool:
@@ -102,6 +169,9 @@ def _sample(
     measured: Measurement,
     truth: Truth,
     clearance: float,
+    clipped: float,
+    solve_time: float,
+    signals: Array,
 ) -> Sample:
     robot, report = scenario.robot, command.report
     return Sample(
@@ -117,15 +187,16 @@ def _sample(
         measured_tip=measured.tip,
         measured_lengths=measured.lengths,
         local_rates=command.local if len(command.local) else np.zeros(len(command.rates)),
-        clipped=command.clipped,
+        clipped=clipped,
         offset=command.offset,
         actual_points=truth.points,
         actual_tip=truth.T_w_t[:3, 3],
         actual_clearance=least_clearance(scenario.zone, robot, truth.points),
         status=status_name(report.status),
-        solve_time=report.solve_time,
+        solve_time=solve_time,
         iterations=report.iterations,
         planes=report.planes,
         step_fraction=report.step_fraction,
         active=tuple(active.name for active in report.active),
+        signals=signals,
     )

@@ -99,7 +99,7 @@ def run(
 def warm_up(scenario: Scenario) -> None:
     """Compile what the first step needs, so that no solve time contains it."""
     controller, c = scenario.controller, scenario.first_configuration
-    robot, target = scenario.robot, scenario.path[0].at(scenario.mpc.dt)
+    robot, target = scenario.robot, scenario.path[0].at(controller.dt)
     measured = Measurement(tip=robot.tip(c), points=robot.points(c), lengths=robot.lengths(c))
     controller.step(controller.init(c), target, measured)
 
