@@ -47,6 +47,11 @@ class Quantity(Enum):
     DURATION = "duration"
     FREQUENCY = "frequency"
     DECAY = "rate of decay"
+    TURNING = "speed of turning"
+    FORCE = "force"
+    STIFFNESS = "stiffness"
+    IMPEDANCE = "damping"
+    MASS = "mass"
 
     @property
     def units(self) -> dict[str, Unit]:
@@ -66,6 +71,11 @@ _UNITS: dict[Quantity, dict[str, Unit]] = {
     Quantity.DURATION: {"s": _SI, "ms": _MILLI},
     Quantity.FREQUENCY: {"hz": _SI},
     Quantity.DECAY: {"per_s": _SI},
+    Quantity.TURNING: {"rad_s": _SI, "rpm": Unit(multiply=math.pi, divide=30.0)},
+    Quantity.FORCE: {"n": _SI},
+    Quantity.STIFFNESS: {"n_m": _SI, "n_mm": Unit(multiply=1000.0)},
+    Quantity.IMPEDANCE: {"n_s_m": _SI},
+    Quantity.MASS: {"kg": _SI, "g": _MILLI},
 }
 
 Length = Annotated[float, Quantity.LENGTH]
@@ -75,6 +85,11 @@ Curvature = Annotated[float, Quantity.CURVATURE]
 Duration = Annotated[float, Quantity.DURATION]
 Frequency = Annotated[float, Quantity.FREQUENCY]
 Decay = Annotated[float, Quantity.DECAY]
+Turning = Annotated[float, Quantity.TURNING]
+Force = Annotated[float, Quantity.FORCE]
+Stiffness = Annotated[float, Quantity.STIFFNESS]
+Impedance = Annotated[float, Quantity.IMPEDANCE]
+Mass = Annotated[float, Quantity.MASS]
 
 
 def split_key(key: str) -> tuple[str, Quantity | None]:

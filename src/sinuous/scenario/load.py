@@ -26,6 +26,8 @@ from sinuous.scenario.plant_tables import RecordedTable
 from sinuous.scenario.scenario import Scenario
 from sinuous.scenario.seen import disturbance_of, mismatch_of, sensor_of
 from sinuous.scenario.tables import CostChoice, PathTable, RobotChoice, ScenarioTable, ZoneTable
+from sinuous.scenario.teleop import Teleoperation
+from sinuous.scenario.teleop_tables import TeleopTable
 from sinuous.scenario.text import toml_text
 
 T = TypeVar("T")
@@ -80,6 +82,7 @@ def load_scenario(path: str | Path, *, set: Iterable[str] = ()) -> Scenario:
         mismatch=mismatch_of(table.plant.mismatch),
         plant=recorded,
         sensor=sensor_of(table.sensor, robot),
+        teleop=source.teleop(table.teleop, mpc, robot.home if start is None else start),
         file=str(path),
         text=toml_text(_absolute(data, source)),
         robot_text=read_text(robot_path(source.robot_name(table.robot.file))),
@@ -201,6 +204,12 @@ class _Source:
         self.found("plant.recorded.csv", path)
         record = read_record_csv(path, robot)
         return partial(RecordedPlant, robot, record, coil=table.coil)
+
+    def teleop(
+        self, table: TeleopTable | None, mpc: ShapeConstrainedMPC, start: Array
+    ) -> Teleoperation | None:
+        """The operator far away, None for none."""
+        return table and Teleoperation(table=table, mpc=mpc, tip=mpc.robot.tip(start))
 
     def found(self, field: str, path: Path) -> None:
         """Refuse a file that is not there, in the words of the scenario."""

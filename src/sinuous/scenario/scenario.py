@@ -16,6 +16,7 @@ from sinuous.plants.mismatched import Mismatch, MismatchedPlant
 from sinuous.plants.plant import Plant
 from sinuous.robots.robot import Robot
 from sinuous.scenario.path import Leg
+from sinuous.scenario.teleop import Teleoperation
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -34,6 +35,7 @@ class Scenario:
         mismatch: of the plant, None for one whose shapes are the model's
         plant: makes the plant that stands in for the robot, None for a `KinematicPlant`
         sensor: wraps a plant, given the seed; None if everything is measured exactly
+        teleop: the operator whose hand follows the path, None if the controller follows it
         file: where the scenario comes from, for messages and to run it again
         text: the scenario as TOML, every path in it absolute; empty if it comes from Python
         robot_text: the robot file's TOML; empty if the robot comes from Python
@@ -53,6 +55,7 @@ class Scenario:
     mismatch: Mismatch | None = None
     plant: Callable[[], Plant] | None = None
     sensor: Callable[[Plant, int], Plant] | None = None
+    teleop: Teleoperation | None = None
     file: str = "scenario"
     text: str = ""
     robot_text: str = ""

@@ -10,6 +10,7 @@ from sinuous.files import Angle, Duration, FieldError, Frequency, Length, Speed
 from sinuous.scenario.control_tables import ControlTable
 from sinuous.scenario.path import MAX_STEPS
 from sinuous.scenario.plant_tables import PlantTable, SensorTable
+from sinuous.scenario.teleop_tables import TeleopTable
 
 Point = tuple[Length, Length, Length]
 
@@ -98,3 +99,4 @@ class ScenarioTable:
     control: ControlTable = field(default_factory=ControlTable)
     plant: PlantTable = field(default_factory=PlantTable)
     sensor: SensorTable | None = None
+    teleop: TeleopTable | None = None

@@ -1,16 +1,19 @@
 """Who says where the tip shall go: the scenario's path itself, or an operator who follows it."""
 
-from dataclasses import dataclass
+from math import isclose
 from typing import Protocol
 
 import numpy as np
 
 from sinuous.arrays import Array
+from sinuous.errors import InputError
 from sinuous.scenario import Scenario
+from sinuous.scenario.path import Leg
+from sinuous.session.by_hand import ByHand
 
 
 class Guide(Protocol):
-    """Turns a place on the path into a target for the controller, tick by tick."""
+    """Yields targets for the controller, tick by tick."""
 
     @property
     def tick(self) -> float:
@@ -22,13 +25,12 @@ class Guide(Protocol):
         """How long the body must rest before the next leg may begin [s]."""
         ...
 
-    def target(self, place: Array, tip: Array) -> Array:
-        """The target (3,) [m] of the tick that begins.
+    def begin(self, leg: Leg) -> None:
+        """A leg of the path begins."""
+        ...
 
-        Arguments:
-            place: on the path (3,) [m]
-            tip: as sensors saw it last (3,) [m]
-        """
+    def target(self, tip: Array) -> Array:
+        """The target (3,) [m] of the tick that begins, given the tip (3,) [m] as last measured."""
         ...
 
     def take(self) -> Array:
@@ -36,20 +38,29 @@ class Guide(Protocol):
         ...
 
 
-@dataclass(frozen=True, kw_only=True)
 class AlongThePath:
-    """The place itself is the target.
+    """The path itself, one control step at a time.
 
     Arguments:
         tick: one control step [s]
     """
 
-    tick: float
-    patience: float = 0.0
+    patience = 0.0
 
-    def target(self, place: Array, tip: Array) -> Array:
-        """The place."""
-        return place
+    def __init__(self, tick: float) -> None:
+        self.tick = tick
+        self._leg: Leg | None = None
+        self._steps = 0
+
+    def begin(self, leg: Leg) -> None:
+        """Set out on a leg."""
+        self._leg, self._steps = leg, 0
+
+    def target(self, tip: Array) -> Array:
+        """The place on the path at the end of the step."""
+        assert self._leg is not None
+        self._steps += 1
+        return self._leg.at(self._steps * self.tick)
 
     def take(self) -> Array:
         """No signals."""
@@ -57,5 +68,22 @@ class AlongThePath:
 
 
 def guide_of(scenario: Scenario) -> Guide:
-    """Who guides a scenario."""
-    return AlongThePath(tick=scenario.controller.dt)
+    """Who guides a scenario.
+
+    Raises:
+        InputError: if a control step is no whole number of ticks
+    """
+    dt = scenario.controller.dt
+    if scenario.teleop is None:
+        return AlongThePath(dt)
+    ticks = dt / scenario.teleop.dt
+    if ticks < 1.0 or not isclose(ticks, round(ticks), rel_tol=1e-9):
+        raise InputError(
+            file=scenario.file,
+            field="teleop.rate",
+            expected=f"a whole multiple of the controller's rate, {1.0 / dt:g} Hz",
+            found=f"{1.0 / scenario.teleop.dt:g} Hz",
+            remedy="Change one of them, for example to mpc.rate_hz = 50 and teleop.rate_hz = 1000.",
+        )
+    start = scenario.robot.tip(scenario.first_configuration)
+    return ByHand(scenario.teleop, start, scenario.path)

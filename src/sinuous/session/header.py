@@ -9,6 +9,7 @@ from sinuous.arrays import Array, IntArray
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.recording import Header, ZonePart
 from sinuous.scenario import Scenario
+from sinuous.session.by_hand import signal_names
 
 PACKAGES = ("sinuous", "numpy", "scipy", "numba", "trimesh")
 """Those whose version may change a run."""
@@ -16,7 +17,7 @@ PACKAGES = ("sinuous", "numpy", "scipy", "numba", "trimesh")
 
 def make_header(scenario: Scenario) -> Header:
     """The header of a run of a scenario."""
-    mpc, robot = scenario.mpc, scenario.robot
+    mpc, robot, teleop = scenario.mpc, scenario.robot, scenario.teleop
     triangles, parts = _drawn(scenario.zone)
     return Header(
         name=scenario.name,
@@ -32,6 +33,8 @@ def make_header(scenario: Scenario) -> Header:
         zone_parts=parts,
         radii=robot.radii,
         disk_indices=robot.disk_indices,
+        signals=() if teleop is None else signal_names(teleop.axes),
+        tick=scenario.controller.dt if teleop is None else teleop.dt,
     )
 
 

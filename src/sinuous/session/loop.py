@@ -1,6 +1,7 @@
 """The loop on simulated time: operator or path, controller, plant, sample."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import ceil
 
 import numpy as np
@@ -40,7 +41,7 @@ def steps(scenario: Scenario) -> Iterator[Sample]:
         PlantFailure: if the plant measures something that is not a finite number
     """
     loop = _Loop(scenario)
-    for leg in scenario.path:
+    for leg in loop.legs:
         yield from loop.leg(leg)
 
 
@@ -59,25 +60,35 @@ class _Loop:
         self._tip = scenario.robot.tip(start)
         self._steps = 0
 
+    @property
+    def legs(self) -> tuple[Leg, ...]:
+        """The legs of the path; one for all for an operator who goes along it in his own time."""
+        path, teleop = self._scenario.path, self._scenario.teleop
+        if teleop is None or not teleop.is_free:
+            return path
+        steps = sum(leg.steps(self._dt) for leg in path)
+        return (replace(path[-1], moving=0.0, max_steps=steps),)
+
     def leg(self, leg: Leg) -> Iterator[Sample]:
         """Yield the samples of one leg."""
         stride = steps_per_sample(self._dt)
         rest = Rest(stride * self._dt, self._guide.patience)
         left, done = leg.steps(self._dt), 0
+        self._guide.begin(leg)
         while done < left:
             last = min(done + stride, left)
-            sample, points = self._sample(leg, done, last)
+            sample, points = self._sample(last - done)
             yield sample
             done = last
             if rest.after(points) and done * self._dt >= leg.moving:
                 break
 
-    def _sample(self, leg: Leg, first: int, last: int) -> tuple[Sample, Array]:
-        """Take control steps of a leg; what happened, and where the nominal body then is."""
+    def _sample(self, steps: int) -> tuple[Sample, Array]:
+        """Take some control steps; what happened, and where the nominal body then is."""
         clearance, clipped, longest, before = np.inf, 0.0, 0.0, self._state.c
         command = target = None
-        for step in range(first, last):
-            command, target = self._step(leg, step)
+        for _ in range(steps):
+            command, target = self._step()
             clipped = max(clipped, command.clipped)
             longest = max(longest, command.report.solve_time)
             if self._scenario.zone.surfaces:
@@ -86,7 +97,7 @@ class _Loop:
         assert command is not None
         assert target is not None
         assert self._measured is not None
-        self._steps += last - first
+        self._steps += steps
         truth = self._plant.truth
         if not _finite(self._measured, truth):
             raise PlantFailure
@@ -105,17 +116,16 @@ class _Loop:
         )
         return sample, command.report.points
 
-    def _step(self, leg: Leg, step: int) -> tuple[Command, Array]:
-        """One control step, with its ticks."""
-        tick, ticks = self._guide.tick, self._ticks
-        target = self._guide.target(leg.at(step * self._dt + tick), self._tip)
+    def _step(self) -> tuple[Command, Array]:
+        """One control step: the controller acts in the first of its ticks."""
+        guide, plant, tick = self._guide, self._plant, self._guide.tick
+        target = guide.target(self._tip)
         self._state, command = self._controller.step(self._state, target, self._measured)
-        self._measured = self._plant.step(command.rates, tick)
-        for k in range(2, ticks + 1):
-            self._tip = self._measured.tip
-            self._guide.target(leg.at(step * self._dt + k * tick), self._tip)
-            self._measured = self._plant.step(command.rates, tick)
-        self._tip = self._measured.tip
+        measured = plant.step(command.rates, tick)
+        for _ in range(1, self._ticks):
+            guide.target(measured.tip)
+            measured = plant.step(command.rates, tick)
+        self._measured, self._tip = measured, measured.tip
         return command, target
 
 

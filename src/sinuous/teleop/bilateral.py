@@ -1,0 +1,106 @@
+"""Both ends and the connection between them, on one clock."""
+
+from dataclasses import dataclass
+from typing import Generic, NamedTuple
+
+from sinuous.arrays import ArrayLike
+from sinuous.teleop.ends import (
+    FollowerEnd,
+    FollowerSignals,
+    FollowerState,
+    LeaderEnd,
+    LeaderSignals,
+    LeaderState,
+)
+from sinuous.teleop.link import Link, LinkModel, Packet
+from sinuous.teleop.operators import O
+
+
+class Signals(NamedTuple):
+    """What there is to see in a tick.
+
+    Arguments:
+        time: when it begins [s]
+        leader: of the leader's end
+        follower: of the follower's end
+    """
+
+    time: float
+    leader: LeaderSignals
+    follower: FollowerSignals
+
+
+class BilateralState(NamedTuple, Generic[O]):
+    """What both ends remember, and the connection between them.
+
+    The links are simulated parts that change with every tick, so a state can be gone on from once.
+
+    Arguments:
+        leader, follower: what the ends remember
+        forward, backward: the links, with the packets under way
+        to_leader, to_follower: what arrives in the next tick
+    """
+
+    leader: LeaderState[O]
+    follower: FollowerState
+    forward: Link
+    backward: Link
+    to_leader: Packet | None
+    to_follower: Packet | None
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Bilateral(Generic[O]):
+    """Operator -> leader -> mapping -> port -> link -> port -> desired point, and back.
+
+    In a tick both ends step with what has arrived; what they send arrives a tick later or more.
+
+    Arguments:
+        leader: the one end
+        follower: the other
+        forward, backward: what connects them, to the follower and back to the leader
+
+    Raises:
+        ValueError: if the parts have different ticks, axes or schemes
+    """
+
+    leader: LeaderEnd[O]
+    follower: FollowerEnd
+    forward: LinkModel
+    backward: LinkModel
+
+    def __post_init__(self) -> None:
+        if self.leader.scheme != self.follower.scheme:
+            raise ValueError("both ends must use the same scheme")
+        if self.leader.mapping.scale.size != self.follower.mapping.scale.size:
+            raise ValueError("both ends must have the same number of axes")
+        for name, link in (("forward", self.forward), ("backward", self.backward)):
+            if link.dt != self.dt:
+                raise ValueError(f"{name} must have ticks of {self.dt} s, not {link.dt}")
+
+    @property
+    def dt(self) -> float:
+        """Time of a tick [s]."""
+        return self.leader.scheme.dt
+
+    def init(self, tip_w: ArrayLike) -> BilateralState[O]:
+        """At rest, the follower's tip at (3,) [m], the leader where (22) puts it for that.
+
+        Raises:
+            ValueError: if the tip is not three finite numbers
+        """
+        follower = self.follower.init(tip_w)
+        leader = self.leader.init(follower.X_sd)
+        forward, backward = self.forward.open(), self.backward.open()
+        return BilateralState(leader, follower, forward, backward, None, None)
+
+    def step(self, state: BilateralState[O], tip_w: ArrayLike) -> tuple[BilateralState[O], Signals]:
+        """One tick, given the follower's measured tip (3,) [m]; never raises for bad numbers."""
+        leader, follower, forward, backward, to_leader, to_follower = state
+        time = leader.tick * self.dt
+        leader, at_leader, ahead = self.leader.step(leader, to_leader)
+        follower, at_follower, back = self.follower.step(follower, tip_w, to_follower)
+        after = BilateralState(
+            leader, follower, forward, backward, backward.step(back), forward.step(ahead)
+        )
+        return after, Signals(time, at_leader, at_follower)

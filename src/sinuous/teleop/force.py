@@ -1,0 +1,113 @@
+"""What the operator shall feel of the follower (23), (24): forces that resist.
+
+The paper's forces act on the hand, but its waves take F_s for the reaction that opposes motion:
+put together as printed, contact is unstable. All forces here have the sign of a reaction: positive
+where the follower's desired point is beyond the real one, or the follower beyond a boundary (notes
+A7).
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from sinuous.arrays import Array
+from sinuous.teleop import kernels
+from sinuous.teleop.checks import positive, zero_or_more
+
+
+class Motion(NamedTuple):
+    """Where the follower should be, and where it is, on the wave side (A,).
+
+    Arguments:
+        X_sd, V_sd: desired [m], and its velocity over the last tick [m/s]
+        X_s, V_s: measured [m], and its velocity over the last tick [m/s]
+    """
+
+    X_sd: Array
+    V_sd: Array
+    X_s: Array
+    V_s: Array
+
+
+class VirtualForce(Protocol):
+    """A force made up of how the follower moves."""
+
+    def force(self, motion: Motion) -> Array:
+        """The force F_s, or a part of it, that opposes the follower's desired motion (A,) [N]."""
+        ...
+
+
+@dataclass(frozen=True)
+class Together:
+    """The sum of forces (23).
+
+    Arguments:
+        parts: one or more
+
+    Raises:
+        ValueError: if there is none
+    """
+
+    parts: tuple[VirtualForce, ...]
+
+    def __post_init__(self) -> None:
+        if not self.parts:
+            raise ValueError("a sum of forces needs one part or more")
+
+    def force(self, motion: Motion) -> Array:
+        """The sum (A,) [N]."""
+        first, *others = self.parts
+        total = first.force(motion)
+        for part in others:
+            total = total + part.force(motion)
+        return total
+
+
+@dataclass(frozen=True, kw_only=True)
+class ErrorForce:
+    """F_e of the tracking error e = X_sd - X_s, per axis (24): k_f (1/2 - 1/(1 + exp(e/s))).
+
+    At most k_f / 2; k_f / 4s per metre where the error is small.
+
+    Arguments:
+        gain: k_f [N]
+        length: s, which the printed argument lacks [m] (notes A8)
+
+    Raises:
+        ValueError: if the gain is negative or the length not positive
+    """
+
+    gain: float = 3.0
+    length: float = 0.01
+
+    def __post_init__(self) -> None:
+        zero_or_more("gain", self.gain)
+        positive("length", self.length)
+
+    def force(self, motion: Motion) -> Array:
+        """F_e (A,) [N]."""
+        out = np.empty(motion.X_s.size)
+        kernels.error_per_axis(self.gain, self.length, motion.X_sd, motion.X_s, out)
+        return out
+
+
+@dataclass(frozen=True, kw_only=True)
+class ErrorForceAlong:
+    """F_e of (24) along the error vector: the same in every direction of space.
+
+    Arguments and errors as for `ErrorForce`; at most k_f / 2 in all.
+    """
+
+    gain: float = 3.0
+    length: float = 0.01
+
+    def __post_init__(self) -> None:
+        zero_or_more("gain", self.gain)
+        positive("length", self.length)
+
+    def force(self, motion: Motion) -> Array:
+        """F_e (A,) [N]."""
+        out = np.empty(motion.X_s.size)
+        kernels.error_along(self.gain, self.length, motion.X_sd, motion.X_s, out)
+        return out
