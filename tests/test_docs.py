@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from sinuous.files import build
-from sinuous.robots.robot_tables import RobotTable
+from sinuous.robots.pcc_tables import PccTable
 from sinuous.scenario.tables import ScenarioTable
 
 ROOT = Path(__file__).parents[1]
@@ -22,7 +22,7 @@ def blocks(document: str, language: str) -> list[str]:
 def test_the_files_shown_are_valid() -> None:
     scenario, robot = blocks("docs/files.md", "toml")
     build(ScenarioTable, tomllib.loads(scenario), file="docs/files.md")
-    build(RobotTable, tomllib.loads(robot), file="docs/files.md")
+    build(PccTable, tomllib.loads(robot), file="docs/files.md")
 
 
 def test_the_shortest_example_runs(

@@ -177,7 +177,7 @@ def test_the_controller_never_sees_the_truth(law: str) -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        (["control.law=pid"], ["control.law", '"mpc" or "dls"', '"pid"']),
+        (["control.law=pid"], ["control.law", '"mpc", "dls" or "geometric_ik"', '"pid"']),
         (["control.law=dls", "control.local.share=0.1"], ["control.law", "mpc"]),
         (["control.local.share=1"], ["control.local.share"]),
         (["control.local.tip_gain=7"], ["tip_gain_per_s"]),

@@ -38,6 +38,7 @@ def make_header(**changes: Any) -> Header:
         "zone_parts": rng.integers(0, len(ZonePart), size=11),
         "radii": rng.random(POINTS),
         "disk_indices": np.array([1, 3, 6]),
+        "tubes": np.array([[0, 1], [4, 6]]),
     }
     return Header(**values | changes)
 

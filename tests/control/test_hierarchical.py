@@ -129,12 +129,14 @@ def driven(
 class Leaning(KinematicPlant):
     """A robot whose tip is always off by the same, and its body in proportion."""
 
+    def _points(self, points):
+        return super()._points(points) + np.linspace(0.0, 1.0, len(points))[:, None] * OFFSET
+
     def _look(self):
         truth = super()._look()
-        share = np.linspace(0.0, 1.0, len(truth.points))[:, None]
         T_w_t = truth.T_w_t.copy()
         T_w_t[:3, 3] += OFFSET
-        return replace(truth, points=truth.points + share * OFFSET, T_w_t=T_w_t)
+        return replace(truth, T_w_t=T_w_t)
 
 
 PLAN_ONLY = OffsetFree(when=When.NEVER)

@@ -45,10 +45,10 @@ class Transparent:
         points[1:, 0] = c
         return points
 
-    def tip_pose(self, c: ArrayLike) -> Array:
-        T_w_t = np.eye(4)
-        T_w_t[:3, 3] = self.points(c)[-1]
-        return T_w_t
+    def shape(self, c: ArrayLike) -> tuple[Array, Array]:
+        points, T_w_t = self.points(c), np.eye(4)
+        T_w_t[:3, 3] = points[-1]
+        return points, T_w_t
 
 
 class Overheard:

@@ -12,8 +12,8 @@ from sinuous.errors import InputError
 from sinuous.files import build, override, read_toml
 from sinuous.robots.parts import CableConvention, Insertion, Tool
 from sinuous.robots.pcc import PccRobot
+from sinuous.robots.pcc_tables import PccTable
 from sinuous.robots.robot_file import PRESETS, load_robot, preset_names
-from sinuous.robots.robot_tables import RobotTable
 
 ROUNDING = 1e-15  # relative: a unit conversion rounds once or twice
 
@@ -175,7 +175,7 @@ def test_every_number_of_a_preset_says_where_it_comes_from(name: str) -> None:
 
 def test_a_preset_can_be_changed_with_overrides() -> None:
     data = override(read_toml(PRESETS / "hachen2025.toml"), ["segment[0].body_radius_m=0.009"])
-    assert build(RobotTable, data, file="x").segment[0].body_radius == 0.009
+    assert build(PccTable, data, file="x").segment[0].body_radius == 0.009
 
 
 BAD: list[tuple[str, dict[str, Any], str]] = [

@@ -8,7 +8,7 @@ import numpy as np
 from sinuous.bench.scene import Scene
 from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
-from sinuous.robots.robot_file import load_robot
+from sinuous.robots.robot_file import load_pcc
 
 RADIUS, ROUGHNESS, LENGTH, BENDING = 0.020, 0.1, 0.20, 9.0  # of the tube [m], [], [m], [1/m]
 BODY, MARGIN = 0.005, 0.0015  # [m]
@@ -35,7 +35,7 @@ def random_scene(rng: np.random.Generator, steps: int, obstacle: bool) -> Scene:
         side = rng.normal(size=3)
         place = axis[2 * len(axis) // 3] + 0.6 * RADIUS * side / np.linalg.norm(side)
         zone = zone.minus(shapes.sphere(OBSTACLE, centre=place), name="obstacle")
-    robot = load_robot("hachen2025")
+    robot = load_pcc("hachen2025")
     T_w_b = np.eye(4)
     T_w_b[2, 3] = BASE
     thin = tuple(replace(segment, body_radius=BODY) for segment in robot.segments)

@@ -14,7 +14,7 @@ from sinuous.arrays import Array
 from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.pcc import PccRobot
-from sinuous.robots.robot_file import load_robot
+from sinuous.robots.robot_file import load_pcc
 from sinuous.view.units import MM_PER_M
 
 RADIUS = 0.025  # of the tube [m]
@@ -69,7 +69,7 @@ def tube() -> SafeZone:
 
 def robot(disks: int) -> PccRobot:
     """The preset of paper B with that many disks in all, thin enough for the tube."""
-    preset = load_robot("hachen2025")
+    preset = load_pcc("hachen2025")
     T_w_b = np.eye(4)
     T_w_b[2, 3] = BASE
     count = disks // len(preset.segments)

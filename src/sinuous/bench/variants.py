@@ -11,7 +11,7 @@ from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.parts import Segment
 from sinuous.robots.pcc import PccRobot
-from sinuous.robots.robot_file import load_robot
+from sinuous.robots.robot_file import load_pcc
 
 SOLID = 10  # disks of the preset's segment; more are thinner, so that it bends as far
 
@@ -35,7 +35,7 @@ class Variant:
 
 def robot(variant: Variant) -> PccRobot:
     """The robot: as long, as fast at its tip and as bendable as the stress scene's."""
-    preset = load_robot("hachen2025")
+    preset = load_pcc("hachen2025")
     T_w_b = np.eye(4)
     T_w_b[2, 3] = scene.BASE
     share = len(preset.segments) / variant.segments

@@ -8,10 +8,10 @@ import numpy as np
 from rich.console import Console
 
 from sinuous.arrays import Array
-from sinuous.cli import describe
+from sinuous.cli import describe, describe_robot
 from sinuous.cli.arguments import Check, assignments
 from sinuous.cli.codes import GOOD, NEGATIVE
-from sinuous.cli.table import Rows, print_rows
+from sinuous.cli.table import Rows, millimetres, print_rows
 from sinuous.errors import InputError
 from sinuous.files import read_toml
 from sinuous.reach import Reach, reaches
@@ -68,13 +68,14 @@ def _kind(arguments: Check) -> tuple[str, Callable[[], Rows]]:
     tables = read_toml(toml)
     if "robot" in tables or "path" in tables:
         return "scenario", lambda: describe.scenario(path, assignments(arguments.set))
-    if "segment" in tables:
-        return "robot", lambda: describe.robot(toml)
+    if "segment" in tables or "modules" in tables:
+        return "robot", lambda: describe_robot.robot(toml)
     raise InputError(
         file=name,
-        expected="a robot with [[segment]] tables, or a scenario with a [robot] table",
-        found="neither",
-        remedy="See the examples of both in examples/.",
+        expected="a robot with [[segment]] tables or a [modules] table, or a scenario with a "
+        "[robot] table",
+        found="none of them",
+        remedy="See the examples in examples/.",
     )
 
 
@@ -108,7 +109,7 @@ def _check_target(console: Console, arguments: Check, target: Array) -> int:
     scenario = load_scenario(arguments.file, set=assignments(arguments.set))
     found = reaches(scenario, target)
     answer = "yes" if found.reached else "no"
-    print_rows(console, f"{arguments.file}: target {describe.millimetres(target)}", _rows(found))
+    print_rows(console, f"{arguments.file}: target {millimetres(target)}", _rows(found))
     console.print(f"reachable: {answer}", highlight=False)
     return GOOD if found.reached else NEGATIVE
 
@@ -116,7 +117,7 @@ def _check_target(console: Console, arguments: Check, target: Array) -> int:
 def _rows(found: Reach) -> Rows:
     return [
         ("distance left", f"{found.distance * MM_PER_M:.4f} mm"),
-        ("tip", describe.millimetres(found.tip)),
+        ("tip", millimetres(found.tip)),
         ("steps", f"{found.steps}{'' if found.rested else ', without coming to rest'}"),
         ("status", found.status.value),
         *(("what stops it" if i == 0 else "", text) for i, text in enumerate(found.obstacles)),

@@ -5,78 +5,16 @@ from pathlib import Path
 
 import numpy as np
 
-from sinuous.arrays import Array
-from sinuous.cli.table import Rows
-from sinuous.files import read_path_csv, read_toml
+from sinuous.cli.table import Rows, millimetres
+from sinuous.files import read_path_csv
 from sinuous.geometry.mesh import check_mesh
 from sinuous.plants.plant import Plant
 from sinuous.recording import read
-from sinuous.robots.parts import Segment
-from sinuous.robots.pcc import PccRobot
-from sinuous.robots.robot_file import load_robot
 from sinuous.scenario import Scenario, load_scenario
 from sinuous.scenario.start import check_start
 from sinuous.summary import summarise
 from sinuous.view.summary_table import summary_rows
 from sinuous.view.units import MM_PER_M, MS_PER_S
-
-
-def millimetres(values: Array) -> str:
-    """Lengths [m] as millimetres."""
-    return ", ".join(f"{value * MM_PER_M:.4g}" for value in np.ravel(values)) + " mm"
-
-
-def robot(path: Path) -> Rows:
-    """Rows about a robot file, for each of its sets of limits."""
-    sets = read_toml(path).get("limits")
-    names = [str(name) for name in sets] if isinstance(sets, dict) else ["simulation"]
-    loaded = {name: load_robot(path, limits=name) for name in names}
-    first = loaded[names[0]]
-    return [
-        ("name", first.name),
-        ("segments", "; ".join(_segments(first))),
-        ("insertion stage", _insertion(first)),
-        ("tool", "none" if first.tool is None else millimetres(np.array(first.tool.offset))),
-        ("coordinates", str(len(first.coordinate_names))),
-        ("actuators", str(len(first.actuator_names))),
-        ("cable lengths", f"counted in the {first.convention.value}"),
-        ("tip at home", millimetres(first.tip(first.home))),
-        *((f"speeds, {name}", _speeds(each)) for name, each in loaded.items()),
-        *((f"lengths, {name}", _lengths(each)) for name, each in loaded.items()),
-    ]
-
-
-def _segments(robot: PccRobot) -> list[str]:
-    return [f"{number}: {_segment(segment)}" for number, segment in enumerate(robot.segments, 1)]
-
-
-def _segment(segment: Segment) -> str:
-    length = " to ".join(f"{x * MM_PER_M:g}" for x in sorted({*segment.length}))
-    parts = [
-        f"{length} mm",
-        f"{len(segment.cable_angles)} cables",
-        f"{segment.disks} disks",
-        f"body radius {segment.body_radius * MM_PER_M:g} mm",
-    ]
-    return ", ".join(parts)
-
-
-def _insertion(robot: PccRobot) -> str:
-    if robot.insertion is None:
-        return "none"
-    low, high = robot.insertion.travel
-    return f"{low * MM_PER_M:g} to {high * MM_PER_M:g} mm"
-
-
-def _speeds(robot: PccRobot) -> str:
-    parts = {"cable": robot.speed.cable, "backbone": robot.speed.backbone}
-    parts["insertion"] = robot.speed.insertion
-    return ", ".join(f"{name} {x * MM_PER_M:g} mm/s" for name, x in parts.items() if x > 0.0)
-
-
-def _lengths(robot: PccRobot) -> str:
-    low, high = robot.length_limits[:, 0], robot.length_limits[:, 1]
-    return f"{low.min() * MM_PER_M:g} to {high.max() * MM_PER_M:g} mm over all actuators"
 
 
 def mesh(path: Path, unit: str) -> Rows:

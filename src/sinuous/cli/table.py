@@ -2,9 +2,13 @@
 
 from collections.abc import Sequence
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
+
+from sinuous.arrays import ArrayLike
+from sinuous.view.units import MM_PER_M
 
 Rows = Sequence[tuple[str, str]]
 
@@ -17,3 +21,8 @@ def print_rows(console: Console, title: str, rows: Rows) -> None:
     for label, text in rows:
         table.add_row(Text(label), Text(text))
     console.print(table)
+
+
+def millimetres(values: ArrayLike) -> str:
+    """Lengths [m] as millimetres."""
+    return ", ".join(f"{value * MM_PER_M:.4g}" for value in np.ravel(values)) + " mm"

@@ -12,6 +12,10 @@ from sinuous.control.reading import Active, Leaning
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.robot import Robot
 
+NOTHING, NOWHERE = np.zeros(0), np.zeros(3)  # shared by all commands that say nothing else
+for _constant in (NOTHING, NOWHERE):
+    _constant.setflags(write=False)
+
 
 class Status(Enum):
     """How a step ended, worded as advice."""
@@ -62,12 +66,12 @@ class Report:
     status: Status
     reason: str = ""
     solve_time: float
-    workload: Workload = field(default_factory=Workload)
+    workload: Workload = Workload()
     step_fraction: float
     points: Array
     robot: Robot = field(repr=False)
     zone: SafeZone = field(repr=False)
-    leaning: Leaning = field(default_factory=Leaning, repr=False)
+    leaning: Leaning = field(default=Leaning(), repr=False)
 
     @property
     def iterations(self) -> int:
@@ -104,9 +108,9 @@ class Command:
 
     rates: Array
     report: Report
-    local: Array = field(default_factory=lambda: np.zeros(0))
+    local: Array = field(default_factory=lambda: NOTHING)
     clipped: float = 0.0
-    offset: Array = field(default_factory=lambda: np.zeros(3))
+    offset: Array = field(default_factory=lambda: NOWHERE)
 
 
 def hold_still(robot: Robot, zone: SafeZone, c: Array, reason: str, began: float) -> Command:

@@ -32,7 +32,7 @@ def attainable(robot: Robot, lengths: Array, rates: Array, dt: float) -> Array:
         asked = robot.lengths(c)
         if np.all((asked >= low) & (asked <= high)) and np.all(robot.bend_slack(c) >= 0.0):
             break
-        c = _unbent(robot, robot.configuration(np.clip(asked, low, high)), now)
+        c = unbent(robot, robot.configuration(np.clip(asked, low, high)), now)
     change = (robot.lengths(c) - robot.lengths(now)) / dt
     return change * speed_share(robot, change)
 
@@ -46,7 +46,7 @@ def speed_share(robot: Robot, rates: Array, base: Array | float = 0.0) -> float:
     return float(np.clip(np.min(shares, initial=1.0), 0.0, 1.0))
 
 
-def _unbent(robot: Robot, c: Array, now: Array) -> Array:
+def unbent(robot: Robot, c: Array, now: Array) -> Array:
     """The configuration with no segment bent beyond its limit, or farther beyond than it is now."""
     limits = robot.bend_limits
     excess = np.maximum(-robot.bend_slack(now) / limits.pitch, 0.0)

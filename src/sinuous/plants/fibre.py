@@ -66,6 +66,9 @@ class ShapeSensing:
         tracker: at its tip; its bias counts as an uncertainty like its noise
         prior: how far the robot may be off its model
         timing: when fibre and tracker are read; the tracker's own is not used
+
+    Raises:
+        ValueError: if the robot bends at joints instead of along segments
     """
 
     robot: Robot
@@ -73,6 +76,10 @@ class ShapeSensing:
     tracker: TipTracker = field(default_factory=TipTracker.printed)
     prior: ShapePrior = field(default_factory=ShapePrior)
     timing: Timing = field(default_factory=lambda: Timing(rate=40.0))
+
+    def __post_init__(self) -> None:
+        if not Centreline(robot=self.robot).is_smooth:
+            raise ValueError("a fibre follows bending segments, and this robot has joints")
 
     def on(self, plant: Plant, seed: int) -> Sensor:
         """A plant, seen through these instruments.

@@ -90,6 +90,9 @@ class MismatchedPlant:
         mismatch: how the plant differs from the model
         start: configuration (n,) that its actuators start from, by default the robot's home;
             there the cables are in the middle of their play
+
+    Raises:
+        ValueError: if the robot bends at joints instead of along segments
     """
 
     def __init__(
@@ -103,6 +106,8 @@ class MismatchedPlant:
         self.robot = robot
         self._mismatch = mismatch or Mismatch()
         self._line = Centreline(robot=robot)
+        if not self._line.is_smooth:
+            raise ValueError("a mismatch is one of bending segments, and this robot has joints")
         self._bent = np.flatnonzero(robot.chain.turns == ARC)
         self._draw(np.random.default_rng((seed, STREAM)))
         self._play = np.where(self._is_cable(), 0.5 * self._mismatch.play, 0.0)

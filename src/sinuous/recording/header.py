@@ -31,6 +31,7 @@ def metadata(header: Header) -> dict[str, str]:
         "versions": header.versions,
         "radii": np.asarray(header.radii, dtype=np.float64).tolist(),
         "disk_indices": np.asarray(header.disk_indices, dtype=np.int64).tolist(),
+        "tubes": np.asarray(header.tubes, dtype=np.int64).tolist(),
         "signals": list(header.signals),
         "tick": float(header.tick),
     }
@@ -70,6 +71,7 @@ def header(
         zone_parts=parts,
         radii=np.array(values["radii"], dtype=np.float64),
         disk_indices=np.array(values["disk_indices"], dtype=np.int64),
+        tubes=np.array(values["tubes"], dtype=np.int64).reshape(-1, 2),
         signals=tuple(values["signals"]),
         tick=values["tick"],
     )

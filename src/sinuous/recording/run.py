@@ -41,6 +41,8 @@ class Header:
     zone_parts: IntArray  # (T,) the `ZonePart` of each triangle
     radii: Array  # (S,) body radius at each of the body points [m]
     disk_indices: IntArray  # (D,) which of the body points are disk centres
+    # (T, 2) first and last body point of every rigid tube
+    tubes: IntArray = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
     signals: tuple[str, ...] = ()  # (C,) what is recorded at every tick, each with its unit
     tick: float = 0.0  # time between ticks [s]
 

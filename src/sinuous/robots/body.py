@@ -29,6 +29,7 @@ class Section:
         curvature: largest [1/m]
         theta: first column of what turns its end, -1 if it is straight
         hinge: whether it turns about its direction by one angle, and has no length
+        tube: whether it is rigid and as thick as its radius says; else cables run free along it
         gamma: column of its length, -1 if that is fixed
         direction: unit vector in which it starts, in its own frame; z if it bends,
             the axis of a hinge
@@ -41,6 +42,7 @@ class Section:
     curvature: float = 0.0
     theta: int = -1
     hinge: bool = False
+    tube: bool = False
     gamma: int = -1
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
@@ -106,6 +108,13 @@ class Body:
                 indices += range(start + step, start + count + 1, step)
             start += count
         return np.array(indices, dtype=np.int64)
+
+    @cached_property
+    def tubes(self) -> IntArray:
+        """First and last guarded point of every section that is a tube (T, 2)."""
+        last = np.cumsum(self.pieces)
+        ends = [(last[m] - self.pieces[m], last[m]) for m, s in enumerate(self.sections) if s.tube]
+        return np.array(ends, dtype=np.int64).reshape(-1, 2)
 
     def required_distance(self, margin: float) -> Array:
         """Distance [m] (S,) of the guarded points that keeps the whole body at the margin.

@@ -17,7 +17,7 @@ import numpy as np
 
 from sinuous.arrays import Array, BoolArray, IntArray
 from sinuous.robots import chain_kernels
-from sinuous.robots.chain_kernels import ARC, STRAIGHT, Chain
+from sinuous.robots.chain_kernels import ARC, HINGE, STRAIGHT, Chain
 from sinuous.robots.robot import Robot
 
 TILT = 2  # coordinates of the base, before those of the arcs
@@ -61,6 +61,11 @@ class Centreline:
     def bends(self) -> BoolArray:
         """Which arcs can bend (A,)."""
         return self.robot.chain.turns[self.section] == ARC
+
+    @cached_property
+    def is_smooth(self) -> bool:
+        """Whether nothing but its arcs bends it; a joint gives it a corner."""
+        return not np.any(self.robot.chain.turns == HINGE)
 
     @cached_property
     def share(self) -> Array:

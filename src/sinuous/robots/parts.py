@@ -1,4 +1,4 @@
-"""What a robot of constant-curvature segments is built from."""
+"""What robots are built from."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -13,6 +13,23 @@ class CableConvention(Enum):
 
     SEGMENT = "segment"  # inside its own segment, as paper B does
     MOTOR = "motor"  # from the robot's base, through all proximal segments
+
+
+class JointOrder(Enum):
+    """About which axes the two angles of a universal joint turn, in order of rotation."""
+
+    ZX = "zx"  # theta about Z, then phi about X (paper A eq. 1, 14)
+    XZ = "xz"  # phi about X, then theta about Z (paper A eq. 15)
+
+    @property
+    def axes(self) -> tuple[int, int]:
+        """Numbers of the coordinate axes."""
+        return (2, 0) if self is JointOrder.ZX else (0, 2)
+
+    @property
+    def angles(self) -> tuple[str, str]:
+        """Names of the angles."""
+        return ("theta", "phi") if self is JointOrder.ZX else ("phi", "theta")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +77,7 @@ class Segment:
 
 @dataclass(frozen=True, kw_only=True)
 class Insertion:
-    """A stage that pushes the robot's base along its z axis on a straight shaft."""
+    """A stage that pushes the robot's base along its axis on a straight shaft."""
 
     travel: tuple[float, float]  # [m]
     home: float  # [m]
@@ -71,14 +88,14 @@ class Insertion:
 class Tool:
     """A rigid tool or sensor whose end is the tip."""
 
-    offset: tuple[float, float, float]  # from the last disk, in its frame [m]
+    offset: tuple[float, float, float]  # from the last disk or plate, in its frame [m]
     radius: float  # [m]
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedLimits:
-    """Largest actuator speeds [m/s], the same in both directions."""
+    """Largest actuator speeds [m/s], the same in both directions; 0 of what there is not."""
 
     cable: float
-    backbone: float
-    insertion: float
+    backbone: float = 0.0
+    insertion: float = 0.0

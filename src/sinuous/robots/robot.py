@@ -54,6 +54,11 @@ class Robot(Protocol):
         ...
 
     @property
+    def tubes(self) -> IntArray:
+        """First and last guarded point of every rigid tube of the body (T, 2)."""
+        ...
+
+    @property
     def rate_limits(self) -> Array:
         """Slowest and fastest actuator rates [m/s] (P, 2)."""
         ...
@@ -114,7 +119,11 @@ class Robot(Protocol):
         ...
 
     def tip_pose(self, c: ArrayLike) -> Array:
-        """Tip pose T_w_t (..., 4, 4): the tip's position, oriented like the last disk."""
+        """Tip pose T_w_t (..., 4, 4): the tip's position, oriented like the last disk or plate."""
+        ...
+
+    def shape(self, c: ArrayLike) -> tuple[Array, Array]:
+        """Points (..., S, 3) and tip pose (..., 4, 4) at once, for what runs at every tick."""
         ...
 
     def lengths(self, c: ArrayLike) -> Array:

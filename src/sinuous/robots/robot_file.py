@@ -1,20 +1,23 @@
-"""Robot files: a TOML of millimetres and degrees becomes a `PccRobot` in SI.
+"""Robot files: a TOML of millimetres and degrees becomes a robot in SI.
 
-The format is declared in `robot_tables`; the presets beside this file are examples of it.
+A file with `[[segment]]` tables is a `PccRobot`, one with a `[modules]` table a `JointedRobot`.
+The formats are declared in `pcc_tables` and `jointed_tables`; the presets beside this file are
+examples of them.
 """
 
 from pathlib import Path
 
 from sinuous.errors import InputError
 from sinuous.files import build, did_you_mean, read_toml
-from sinuous.robots.parts import Insertion, Segment, SpeedLimits, Tool
+from sinuous.robots.jointed import JointedRobot
+from sinuous.robots.jointed_tables import JointedTable
 from sinuous.robots.pcc import PccRobot
-from sinuous.robots.robot_tables import LimitsTable, RobotTable, SegmentTable
+from sinuous.robots.pcc_tables import PccTable
 
 PRESETS = Path(__file__).parent / "presets"
 
 
-def load_robot(name_or_path: str | Path, *, limits: str = "simulation") -> PccRobot:
+def load_robot(name_or_path: str | Path, *, limits: str = "simulation") -> PccRobot | JointedRobot:
     """Return the robot of a preset or a robot file.
 
     Arguments:
@@ -25,7 +28,7 @@ def load_robot(name_or_path: str | Path, *, limits: str = "simulation") -> PccRo
         InputError: if there is no such robot, or something is wrong with its file
     """
     path = robot_path(name_or_path)
-    table = build(RobotTable, read_toml(path), file=str(path))
+    table = _table(path)
     if limits not in table.limits:
         raise InputError(
             file=str(path),
@@ -34,7 +37,44 @@ def load_robot(name_or_path: str | Path, *, limits: str = "simulation") -> PccRo
             found="none",
             remedy=did_you_mean(limits, list(table.limits), what="sets of limits"),
         )
-    return _robot(table, table.limits[limits])
+    return table.robot(limits)
+
+
+def load_pcc(name_or_path: str | Path, *, limits: str = "simulation") -> PccRobot:
+    """Return a robot that must be one of constant-curvature segments; see `load_robot`."""
+    robot = load_robot(name_or_path, limits=limits)
+    if not isinstance(robot, PccRobot):
+        raise _other_kind(name_or_path, "a robot of segments", "one of modules")
+    return robot
+
+
+def load_jointed(name_or_path: str | Path, *, limits: str = "simulation") -> JointedRobot:
+    """Return a robot that must be one of rigid modules; see `load_robot`."""
+    robot = load_robot(name_or_path, limits=limits)
+    if not isinstance(robot, JointedRobot):
+        raise _other_kind(name_or_path, "a robot of modules", "one of segments")
+    return robot
+
+
+def _table(path: Path) -> PccTable | JointedTable:
+    data, file = read_toml(path), str(path)
+    if "modules" in data and "segment" in data:
+        raise InputError(
+            file=file,
+            field="modules",
+            expected="either [[segment]] tables or a [modules] table",
+            found="both",
+            remedy="Keep one of them: a robot bends along its segments or at its joints.",
+        )
+    if "modules" in data:
+        return build(JointedTable, data, file=file)
+    return build(PccTable, data, file=file)
+
+
+def _other_kind(name_or_path: str | Path, expected: str, found: str) -> InputError:
+    return InputError(
+        file=str(name_or_path), expected=expected, found=found, remedy="Name another robot."
+    )
 
 
 def preset_names() -> list[str]:
@@ -58,36 +98,4 @@ def robot_path(name_or_path: str | Path) -> Path:
         expected="a preset or the path of a robot file ending in .toml",
         found="neither",
         remedy=did_you_mean(name_or_path, preset_names(), what="presets"),
-    )
-
-
-def _robot(table: RobotTable, limits: LimitsTable) -> PccRobot:
-    lengths = limits.cable_lengths(len(table.segment))
-    stage, tool = table.insertion, table.tool
-    return PccRobot(
-        name=table.name,
-        segments=tuple(map(_segment, table.segment, lengths)),
-        speed=SpeedLimits(
-            cable=limits.cable_speed,
-            backbone=limits.backbone_speed or 0.0,  # without an actuator nobody reads it
-            insertion=limits.insertion_speed or 0.0,
-        ),
-        convention=table.cable_convention,
-        insertion=stage and Insertion(travel=stage.travel, home=stage.start, radius=stage.radius),
-        tool=tool and Tool(offset=tool.offset, radius=tool.radius),
-        spacing=table.guard_spacing,
-    )
-
-
-def _segment(table: SegmentTable, cable_length: tuple[float, float]) -> Segment:
-    return Segment(
-        length=table.range,
-        home_length=table.home,
-        disks=table.disks,
-        cable_angles=table.cable_angles,
-        pitch_radii=table.radii,
-        body_radius=table.body_radius,
-        disk_thickness=table.disk_thickness,
-        max_curvature=table.curvature,
-        cable_length=cable_length,
     )

@@ -44,36 +44,45 @@ def affine(A: Array, b: Array) -> Routing:
 
 
 @inner
-def turned(axis: int, angle: float, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """A vector turned about a coordinate axis."""
-    sine, cosine = np.sin(angle), np.cos(angle)
-    if axis == 0:
-        return x, cosine * y - sine * z, sine * y + cosine * z
-    if axis == 1:
-        return cosine * x + sine * z, y, cosine * z - sine * x
-    return cosine * x - sine * y, sine * x + cosine * y, z
+def crossing(routing: Routing, x: int, c: Array) -> tuple[float, float, float]:
+    """Length [m] of a stretch, and its derivatives by the two angles of its joint."""
+    first, second = float(c[routing.column[x]]), float(c[routing.column[x] + 1])
+    return stretch(routing, x, np.sin(first), np.cos(first), np.sin(second), np.cos(second))
 
 
 @inner
-def crossing(routing: Routing, x: int, c: Array) -> tuple[float, float, float]:
-    """Length [m] of a stretch, and its derivatives by the two angles of its joint."""
-    column, first, second = routing.column[x], routing.axes[x, 0], routing.axes[x, 1]
-    u, v, w = turned(
-        second, float(c[column + 1]), routing.after[x, 0], routing.after[x, 1], routing.after[x, 2]
-    )
-    px, py, pz = turned(first, float(c[column]), u, v, w)
+def stretch(
+    routing: Routing, x: int, sine1: float, cosine1: float, sine2: float, cosine2: float
+) -> tuple[float, float, float]:
+    """The same, given sine and cosine of both angles."""
+    first, second = routing.axes[x, 0], routing.axes[x, 1]
+    u, v, w = routing.after[x, 0], routing.after[x, 1], routing.after[x, 2]
+    u, v, w = turned(second, sine2, cosine2, u, v, w)
+    px, py, pz = turned(first, sine1, cosine1, u, v, w)
     sx, sy, sz = routing.before[x, 0] + px, routing.before[x, 1] + py, routing.before[x, 2] + pz
     length = np.sqrt(sx * sx + sy * sy + sz * sz)
     # e1 x p, with p after both turns, and Rot(e1, q1) (e2 x u), with u after the second alone.
     ax, ay, az = _across(first, px, py, pz)
     u, v, w = _across(second, u, v, w)
-    bx, by, bz = turned(first, float(c[column]), u, v, w)
+    bx, by, bz = turned(first, sine1, cosine1, u, v, w)
     inverse = 1.0 / length if length > 0.0 else 0.0
     return (
         length,
         inverse * (sx * ax + sy * ay + sz * az),
         inverse * (sx * bx + sy * by + sz * bz),
     )
+
+
+@inner
+def turned(
+    axis: int, sine: float, cosine: float, x: float, y: float, z: float
+) -> tuple[float, float, float]:
+    """A vector turned about a coordinate axis by an angle of that sine and cosine."""
+    if axis == 0:
+        return x, cosine * y - sine * z, sine * y + cosine * z
+    if axis == 1:
+        return cosine * x + sine * z, y, cosine * z - sine * x
+    return cosine * x - sine * y, sine * x + cosine * y, z
 
 
 @inner

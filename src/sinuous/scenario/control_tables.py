@@ -9,7 +9,9 @@ from pydantic import Field
 from sinuous.control.dls import DampedLeastSquares
 from sinuous.control.local import LocalController
 from sinuous.control.offset_free import OffsetFree, When
-from sinuous.files import Decay, Duration, FieldError, Length
+from sinuous.control.pid import Pid
+from sinuous.control.transmission import Transmission
+from sinuous.files import Decay, Duration, FieldError, Frequency, Length, Turning
 
 _NotNegative = Field(ge=0.0)
 _Positive = Field(gt=0.0)
@@ -20,6 +22,7 @@ class LawChoice(Enum):
 
     MPC = "mpc"
     DLS = "dls"  # the reference controller (30) of paper B
+    GEOMETRIC_IK = "geometric_ik"  # with a PID for every cable, of paper A
 
 
 class OffsetChoice(Enum):
@@ -65,6 +68,20 @@ class DlsTable:
 
 
 @dataclass(frozen=True, kw_only=True)
+class CableLoopTable:
+    """`[control.cable_loop]`: the PIDs (26) of paper A behind geometric inverse kinematics."""
+
+    rate: Annotated[Frequency, _Positive] = 1000.0
+    proportional: Annotated[Decay, _NotNegative] = Pid.proportional
+    integral: Annotated[float, _NotNegative] = Pid.integral  # [1/s^2]
+    derivative: Annotated[float, _NotNegative] = Pid.derivative
+    filter: Annotated[Duration, _NotNegative] = Pid.filter  # of the derivative
+    lead: Annotated[Length, _Positive] = Transmission.lead
+    ratio: Annotated[float, _Positive] = Transmission.ratio
+    motor_speed: Annotated[Turning, _Positive] = Transmission.speed
+
+
+@dataclass(frozen=True, kw_only=True)
 class ControlTable:
     """`[control]`: which controller runs, and its feedback."""
 
@@ -73,11 +90,13 @@ class ControlTable:
     local: LocalTable | None = None
     offset_free: OffsetFreeTable | None = None
     dls: DlsTable = field(default_factory=DlsTable)
+    cable_loop: CableLoopTable = field(default_factory=CableLoopTable)
 
     def __post_init__(self) -> None:
-        if self.law is LawChoice.DLS and (self.local or self.offset_free):
+        if self.law is not LawChoice.MPC and (self.local or self.offset_free):
             raise FieldError(
                 "law",
                 expected='"mpc" with [control.local] or [control.offset_free]',
-                remedy="These add feedback to the plan; dls has its own. Take them out.",
+                remedy=f"These add feedback to the plan; {self.law.value} has its own. "
+                "Take them out.",
             )

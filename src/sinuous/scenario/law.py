@@ -3,13 +3,18 @@
 from dataclasses import dataclass
 from typing import Any
 
+from sinuous.control.cable_loop import CableLoop
 from sinuous.control.controller import Controller
 from sinuous.control.dls import DampedLeastSquares
+from sinuous.control.geometric_ik import GeometricIK
 from sinuous.control.hierarchical import HierarchicalController
 from sinuous.control.local import LocalController
 from sinuous.control.mpc import ShapeConstrainedMPC
 from sinuous.control.offset_free import OffsetFree
+from sinuous.control.pid import Pid
 from sinuous.control.projected import ProjectedTarget
+from sinuous.control.transmission import Transmission
+from sinuous.robots.jointed import JointedRobot
 from sinuous.scenario.control_tables import ControlTable, LawChoice, LocalTable, OffsetFreeTable
 
 
@@ -56,6 +61,40 @@ class Reference:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ByCables:
+    """Geometric inverse kinematics and PIDs in the plan's stead: `CableLoop`.
+
+    Arguments:
+        pid, transmission: of the cables
+        dt: of a tick [s]
+    """
+
+    pid: Pid
+    transmission: Transmission
+    dt: float
+
+    def __call__(self, mpc: ShapeConstrainedMPC) -> Controller[Any]:
+        """The controller for the same robot, zone and margin.
+
+        Raises:
+            ValueError: if the robot is none that geometric inverse kinematics can solve
+        """
+        if not isinstance(mpc.robot, JointedRobot):
+            raise ValueError("geometric inverse kinematics needs a robot of rigid modules")
+        return CableLoop(
+            GeometricIK(mpc.robot),
+            mpc.zone,
+            margin=mpc.margin,
+            pid=self.pid,
+            transmission=self.transmission,
+            dt=self.dt,
+        )
+
+
+Law = Feedback | Reference | ByCables
+
+
+@dataclass(frozen=True, kw_only=True)
 class Projected:
     """A controller whose target is projected onto the zone: `ProjectedTarget`.
 
@@ -63,14 +102,14 @@ class Projected:
         law: makes the controller, None for the plan itself
     """
 
-    law: Feedback | Reference | None
+    law: Law | None
 
     def __call__(self, mpc: ShapeConstrainedMPC) -> Controller[Any]:
         """The controller behind the projection."""
         return ProjectedTarget(mpc if self.law is None else self.law(mpc))
 
 
-def law_of(table: ControlTable, *, seen: bool) -> Feedback | Reference | Projected | None:
+def law_of(table: ControlTable, *, seen: bool) -> Law | Projected | None:
     """What makes the controller, None for the plan alone.
 
     Arguments:
@@ -81,9 +120,21 @@ def law_of(table: ControlTable, *, seen: bool) -> Feedback | Reference | Project
     return Projected(law=law) if table.project_target else law
 
 
-def _unprojected(table: ControlTable, *, seen: bool) -> Feedback | Reference | None:
+def _unprojected(table: ControlTable, *, seen: bool) -> Law | None:
     if table.law is LawChoice.DLS:
         return Reference(gain=table.dls.gain, damping=table.dls.damping, penalty=table.dls.penalty)
+    if table.law is LawChoice.GEOMETRIC_IK:
+        loop = table.cable_loop
+        return ByCables(
+            pid=Pid(
+                proportional=loop.proportional,
+                integral=loop.integral,
+                derivative=loop.derivative,
+                filter=loop.filter,
+            ),
+            transmission=Transmission(lead=loop.lead, ratio=loop.ratio, speed=loop.motor_speed),
+            dt=1.0 / loop.rate,
+        )
     if not seen and table.local is None and table.offset_free is None:
         return None
     local, offset = table.local or LocalTable(), table.offset_free or OffsetFreeTable()

@@ -66,6 +66,7 @@ class PlantTable:
     disturbance: DisturbanceTable | None = None
     mismatch: MismatchTable | None = None
     recorded: RecordedTable | None = None
+    encoder_step: Annotated[Length, _NotNegative] = 0.0  # above zero nothing else is measured
 
     def __post_init__(self) -> None:
         given = [name for name in ("disturbance", "mismatch", "recorded") if getattr(self, name)]
@@ -74,6 +75,12 @@ class PlantTable:
                 given[1],
                 expected="one of disturbance, mismatch and recorded",
                 remedy="Each is a plant of its own: keep one of them.",
+            )
+        if self.encoder_step > 0.0 and (self.mismatch or self.recorded):
+            raise FieldError(
+                "encoder_step",
+                expected="none with a mismatch or a record",
+                remedy="Their encoders are exact, and read as recorded: take it out.",
             )
 
 

@@ -33,6 +33,7 @@ class Scenario:
         recover: whether the start may be closer to a wall than the margin, or beyond it
         disturbance: of the plant, None for an exact one
         mismatch: of the plant, None for one whose shapes are the model's
+        encoder_step: what the encoders resolve [m]; above zero nothing else is measured
         plant: makes the plant that stands in for the robot, None for a `KinematicPlant`
         sensor: wraps a plant, given the seed; None if everything is measured exactly
         teleop: the operator whose hand follows the path, None if the controller follows it
@@ -53,6 +54,7 @@ class Scenario:
     recover: bool = False
     disturbance: Disturbance | None = None
     mismatch: Mismatch | None = None
+    encoder_step: float = 0.0
     plant: Callable[[], Plant] | None = None
     sensor: Callable[[Plant, int], Plant] | None = None
     teleop: Teleoperation | None = None
@@ -107,4 +109,5 @@ class Scenario:
             seed=self.seed,
             disturbance=self.disturbance,
             start=self.first_configuration,
+            encoder_step=self.encoder_step,
         )

@@ -33,6 +33,7 @@ def make_header(scenario: Scenario) -> Header:
         zone_parts=parts,
         radii=robot.radii,
         disk_indices=robot.disk_indices,
+        tubes=robot.tubes,
         signals=() if teleop is None else signal_names(teleop.axes),
         tick=scenario.controller.dt if teleop is None else teleop.dt,
     )

@@ -45,7 +45,7 @@ class BoxForce:
 
     def force(self, motion: Motion) -> Array:
         """F_b (A,) [N]."""
-        out = np.empty(motion.X_s.size)
+        out = np.empty(self._low.size)
         X, V = motion.X_s, motion.V_s
         kernels.box(self._low, self._high, self.stiffness, self.damping, X, V, out)
         return out
@@ -103,7 +103,7 @@ class ZoneForce:
         triangle = np.empty(1, dtype=np.int64)
         point = self.mapping.place(motion.X_sd).reshape(1, 3)
         bvh.nearest(self.zone.arrays, point, clearance, gradient, triangle)
-        out, depth = np.zeros(motion.X_sd.size), self.distance - clearance[0]
+        out, depth = np.zeros(self.mapping.scale.size), self.distance - clearance[0]
         if depth >= 0.0:
             axes, V = self.mapping.axes, motion.V_sd
             kernels.wall(axes, gradient, depth, self.stiffness, self.damping, V, out)

@@ -166,12 +166,20 @@ class FollowerEnd:
         mapping: from the wave side to the world
         force: what the operator shall feel
         correction: of the desired point's drift; None as printed
+
+    Raises:
+        ValueError: if force and mapping differ in their axes
     """
 
     scheme: Scheme
     mapping: Mapping
     force: VirtualForce
     correction: DriftCorrection | None = None
+
+    def __post_init__(self) -> None:
+        zero = self._zero
+        if self.force.force(Motion(zero, zero, zero, zero)).shape != zero.shape:
+            raise ValueError(f"the force must have {zero.size} axes, as the mapping has")
 
     @cached_property
     def _zero(self) -> Array:
@@ -205,7 +213,7 @@ class FollowerEnd:
             tank, v_c = self.correction.step(tank, lost, F_s, offset, dt)
             V_sd = V_sd + v_c
         kernels.advance(X_sd, V_sd, dt, X_next)
-        if not kernels.finite(F_s, sent, X_next):
+        if not kernels.finite(X_s, sent, X_next):
             return self._rest(state, X_s, wave)
         target = self.mapping.place(X_next)
         signals = FollowerSignals(X_sd, V_sd, X_s, F_s, target, wave, "")

@@ -74,7 +74,13 @@ class Mapping:
         return out
 
     def project(self, p_w: ArrayLike) -> Array:
-        """Wave-side coordinates (A,) [m] of a point (3,) [m]; what is off the axes is dropped."""
-        out = np.empty(self.scale.size)
-        kernels.project(self.axes, self.origin, np.array(p_w, dtype=np.float64), out)
+        """Wave-side coordinates (A,) [m] of a point (3,) [m]; what is off the axes is dropped.
+
+        Raises:
+            ValueError: if the point is not three numbers
+        """
+        out, p = np.empty(self.scale.size), np.array(p_w, dtype=np.float64)
+        if p.shape != (3,):
+            raise ValueError(f"a point must be three numbers, not {p.shape}")
+        kernels.project(self.axes, self.origin, p, out)
         return out

@@ -63,7 +63,13 @@ class MoveAndWait:
         object.__setattr__(self, "stops", stops)
 
     def init(self, x: Array) -> Waiting:
-        """About to set out from x (A,) [m]."""
+        """About to set out from x (A,) [m].
+
+        Raises:
+            ValueError: if the stops have another number of axes
+        """
+        if self.stops.shape[1] != x.size:
+            raise ValueError(f"stops must have {x.size} axes, not {self.stops.shape[1]}")
         return Waiting(stops=1, start=x, since=0.0, calm=self.moving, force=np.zeros(x.size))
 
     def step(

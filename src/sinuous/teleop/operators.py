@@ -63,8 +63,8 @@ class Prescribed:
     def step(self, state: None, felt: Felt, device: LeaderDevice, dt: float) -> tuple[None, Array]:
         """The force F_h (A,) [N] on the device for one tick of dt [s]."""
         speed = np.empty(felt.x.size)
-        soon, now = _place(self.goal, felt.time + dt), _place(self.goal, felt.time)
-        kernels.difference(soon, now, dt, speed)
+        now = _place(self.goal, felt.time, felt.x)
+        kernels.difference(_place(self.goal, felt.time + dt, felt.x), now, dt, speed)
         return None, device.force_for(speed, felt.v, felt.F_m, dt)
 
 
@@ -94,10 +94,18 @@ class ImpedanceOperator:
 
     def step(self, state: None, felt: Felt, device: LeaderDevice, dt: float) -> tuple[None, Array]:
         """The force F_h (A,) [N] on the device for one tick of dt [s]."""
-        force, goal = np.empty(felt.x.size), _place(self.goal, felt.time)
+        force, goal = np.empty(felt.x.size), _place(self.goal, felt.time, felt.x)
         kernels.spring_damper(self.stiffness, self.damping, goal, felt.x, felt.v, force)
         return None, force
 
 
-def _place(goal: Goal, time: float) -> Array:
-    return np.array(goal(time), dtype=np.float64)
+def _place(goal: Goal, time: float, x: Array) -> Array:
+    """The goal (A,) at a time, for a device at x (A,).
+
+    Raises:
+        ValueError: if it has another number of axes
+    """
+    place = np.array(goal(time), dtype=np.float64)
+    if place.shape != x.shape:
+        raise ValueError(f"the operator's goal must have {x.size} axes, not {place.shape}")
+    return place

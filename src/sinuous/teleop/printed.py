@@ -40,7 +40,7 @@ class PrintedForce:
 
     def force(self, motion: Motion) -> Array:
         """F_e + F_b (A,) [N]."""
-        out = np.empty(motion.X_s.size)
+        out = np.empty(self._sides[0].size)
         kernels.error_per_axis(self.gain, self.length, motion.X_s, motion.X_sd, out)
         X, V = motion.X_s, motion.V_s
         kernels.printed_box(*self._sides, self.stiffness, self.damping, X, V, out)

@@ -139,8 +139,8 @@ class ModifiedWaves:
 
         F_m = F_r + K b v_m,  v_sd = (g_r - F_s) / b,  waves g / K forward and F_s / K back.
 
-    The filter is explicit Euler, g <- g + lambda dt (w - g), and what it becomes is sent, so that
-    lambda dt = 1 is no filter. For K >= 1/2 and lambda dt <= 1 the channel is passive, whatever b
+    The filter is explicit Euler, g <- g + lambda dt (w - g). What it becomes is sent, so that
+    lambda dt = 1 is no filter; that is a tick ahead of (16). For K >= 1/2 and lambda dt <= 1 the channel is passive, whatever b
     and a constant delay; see `analysis.passivity`.
 
     Arguments:

@@ -1,9 +1,9 @@
-"""Which actuators belong together: of one kind in one panel, of one segment in one colour."""
+"""Which actuators belong together: of one kind in one panel, of one part in one colour."""
 
 import re
 from dataclasses import dataclass
 
-SEGMENT = re.compile(r"segment (\d+) ")
+PART = re.compile(r"(segment|module) (\d+) ")
 NUMBER = re.compile(r"\s*(\d+)$")
 
 
@@ -14,27 +14,30 @@ class Actuator:
     Arguments:
         index: among the robot's actuators
         kind: what it is, such as "cable", "backbone", "insertion"
-        segment: the number of its segment, 0 if it belongs to none
-        number: which of its kind in that segment, 0 if there is only one
+        segment: the number of its segment or module, 0 if it belongs to none
+        number: which of its kind in that part, 0 if there is only one
+        part: whether it is a segment or a module
     """
 
     index: int
     kind: str
     segment: int
     number: int
+    part: str = "segment"
 
 
 def actuator_kinds(names: tuple[str, ...]) -> dict[str, list[Actuator]]:
     """Actuators by kind, in the order in which the kinds occur."""
     kinds: dict[str, list[Actuator]] = {}
     for index, name in enumerate(names):
-        segment, number = SEGMENT.match(name), NUMBER.search(name)
-        rest = name[segment.end() if segment else 0 : number.start() if number else None]
+        part, number = PART.match(name), NUMBER.search(name)
+        rest = name[part.end() if part else 0 : number.start() if number else None]
         actuator = Actuator(
             index=index,
             kind=rest or "actuator",
-            segment=int(segment[1]) if segment else 0,
+            segment=int(part[2]) if part else 0,
             number=int(number[1]) if number else 0,
+            part=part[1] if part else "segment",
         )
         kinds.setdefault(actuator.kind, []).append(actuator)
     return kinds

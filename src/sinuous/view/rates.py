@@ -28,7 +28,7 @@ def rates_height(recording: Recording) -> float:
 
 
 def draw_rates(figure: Figure, recording: Recording) -> None:
-    """One panel per kind; the colour tells the segment, the dash which of its cables."""
+    """One panel per kind; the colour tells the segment or module, the dash which cable."""
     kinds = actuator_kinds(recording.header.actuator_names)
     rows = figure.subplots(
         max(len(kinds), 1), 1, sharex=True, squeeze=False, height_ratios=_heights(recording)
@@ -68,9 +68,9 @@ def _draw_kind(axes: Axes, recording: Recording, kind: str, members: list[Actuat
 
 def _keys(kind: str, members: list[Actuator]) -> list[Line2D]:
     """What colours and dashes mean: far fewer entries than curves."""
-    segments = {a.segment: _color(a) for a in members if a.segment}
+    parts = {f"{a.part} {a.segment}": _color(a) for a in members if a.segment}
     numbers: dict[int, LineStyleType] = {a.number: _dash(a) for a in members if a.number}
-    keys = [Line2D([], [], color=c, label=f"segment {s}") for s, c in segments.items()]
+    keys = [Line2D([], [], color=color, label=part) for part, color in parts.items()]
     keys += [
         Line2D([], [], color=GREY, linestyle=dash, label=f"{kind} {n}")
         for n, dash in numbers.items()

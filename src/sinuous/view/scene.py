@@ -80,7 +80,7 @@ class Scene:
                 FINE * float((high - low).max()),
                 rgb(SLATE),
             ),
-            robot=body(points[-1], radii, header.disk_indices, colors[-1]),
+            robot=body(points[-1], radii, header.disk_indices, colors[-1], header.tubes),
             earlier=together(
                 [
                     wire(points[k], WIRE * float(radii.max()), color)

@@ -14,6 +14,7 @@ SAME = 1e-9  # [m] between two points that are one
 LIGHT = np.array([-0.35, -0.5, 0.79])  # where it comes from
 SHADE = 0.66  # brightness of what the light does not reach
 FINEST = 64  # splits of a triangle; more would show nothing new
+NO_TUBES: IntArray = np.zeros((0, 2), dtype=np.int64)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,14 +60,17 @@ def wire(points: Array, radius: float, color: ArrayLike) -> Solid:
     return _painted(_tube(points[path], np.full(len(path), radius), 6), color)
 
 
-def body(points: Array, radii: Array, disks: IntArray, color: ArrayLike) -> Solid:
+def body(
+    points: Array, radii: Array, disks: IntArray, color: ArrayLike, tubes: IntArray = NO_TUBES
+) -> Solid:
     """A robot: a backbone with disks, solid before the first and behind the last of them.
 
     Arguments:
         points: (S, 3) [m]
         radii: (S,) [m]
         disks: which of the points are centres of disks (D,); without any all is solid
-        color: of the disks
+        color: of disks and tubes
+        tubes: first and last point of every stretch that is solid (T, 2); its ends are no disks
     """
     path = _distinct(points)
     slim = np.ones(len(points))
@@ -80,9 +84,13 @@ def body(points: Array, radii: Array, disks: IntArray, color: ArrayLike) -> Soli
         along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), SAME)
         gaps = np.linalg.norm(np.diff(points[disks], axis=0), axis=1)
         half = 0.5 * THICKNESS * float(np.mean(gaps))
-        for i in disks:
+        inside = np.any((tubes[:, :1] <= disks) & (disks <= tubes[:, 1:]), axis=0)
+        for i in disks[~inside]:
             ends = points[i] + half * np.outer((-1.0, 1.0), along[i])
             solids.append(_painted(_tube(ends, radii[[i, i]], AROUND), color))
+    for first, last in tubes:
+        own = first + _distinct(points[first : last + 1])
+        solids.append(_painted(_tube(points[own], radii[own], AROUND), color))
     return together(solids)
 
 

@@ -14,7 +14,7 @@ from sinuous.control.mpc import ShapeConstrainedMPC
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.papers.hachen2025.runs import scenario
 from sinuous.robots.pcc import PccRobot
-from sinuous.robots.robot_file import load_robot
+from sinuous.robots.robot_file import load_pcc
 
 DT = 1 / 30  # [s]
 
@@ -88,7 +88,7 @@ class Place:
 def place(name: str) -> Place:
     """A place by its name, the same for every run in a process."""
     if name == FREE:
-        robot = load_robot("hachen2025")
+        robot = load_pcc("hachen2025")
         return Place(robot=robot, zone=SafeZone.unbounded(), start=robot.home, margin=0.0)
     base = scenario(name)
     assert isinstance(base.robot, PccRobot)

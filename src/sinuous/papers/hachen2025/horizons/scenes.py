@@ -11,7 +11,7 @@ from sinuous.control.mpc import ShapeConstrainedMPC
 from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.pcc import PccRobot
-from sinuous.robots.robot_file import load_robot
+from sinuous.robots.robot_file import load_pcc
 from sinuous.scenario import Scenario
 from sinuous.scenario.path import waypoints
 
@@ -163,7 +163,7 @@ def _chamber() -> SafeZone:
 
 
 def _dead_end(zone: SafeZone, targets: Array, via: Array) -> DeadEnd:
-    preset = load_robot("hachen2025")
+    preset = load_pcc("hachen2025")
     T_w_b = np.eye(4)
     T_w_b[2, 3] = BASE
     thin = tuple(replace(segment, body_radius=BODY_RADIUS) for segment in preset.segments)

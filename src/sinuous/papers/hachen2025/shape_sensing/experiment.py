@@ -23,7 +23,7 @@ from sinuous.plants.sensors import TipTracker
 from sinuous.plants.shape_estimate import ShapeEstimate, ShapeEstimator, ShapePrior, TipFix
 from sinuous.robots.centreline import Centreline
 from sinuous.robots.pcc import PccRobot
-from sinuous.robots.robot_file import load_robot
+from sinuous.robots.robot_file import load_pcc
 
 SENSORS: dict[str, tuple[bool, bool]] = {
     "encoders alone": (False, False),
@@ -76,7 +76,7 @@ class Rig:
 @cache
 def rig(name: str) -> Rig:
     """A robot with the tracker of paper B, IV, and a fibre."""
-    robot, tracker = load_robot(name.split(",")[0]), TipTracker.printed()
+    robot, tracker = load_pcc(name.split(",")[0]), TipTracker.printed()
     if name == ONE_SEGMENT:
         robot = replace(robot, segments=robot.segments[:1])
     line = Centreline(robot=robot, coil=tracker.coil)
