@@ -56,6 +56,19 @@ backbone_speed_mm_s = 10
 cable_length_mm = [120, 280]
 """
 
+JOINTED = """\
+name = "arm"
+[modules]
+count = 3
+holes = 9
+radius_mm = 8
+plate_offset_mm = 5
+tube_length_mm = 40
+max_bend_deg = 50
+[limits.simulation]
+cable_speed_mm_s = 100
+"""
+
 CSV = "t_s,x_mm,y_mm,z_mm\n0,0,0,200\n1,0,0,205\n"
 
 
@@ -268,6 +281,26 @@ CASES = [
         words=("robot.toml: segment[0].body_radius_mm", "more than 0", "-8"),
     ),
     Case(
+        name="too few holes for the cables of a jointed robot",
+        spoil=write("robot.toml", JOINTED.replace("holes = 9", "holes = 6")),
+        words=("robot.toml: modules.holes", "multiple of 3 and at least 9", "found 6"),
+    ),
+    Case(
+        name="a jointed robot without modules",
+        spoil=write("robot.toml", JOINTED.replace("count = 3", "count = 0")),
+        words=("robot.toml: modules.count", "at least 1", "found 0"),
+    ),
+    Case(
+        name="joints that bend beyond contact",
+        spoil=write("robot.toml", JOINTED.replace("max_bend_deg = 50", "max_bend_deg = 70")),
+        words=("robot.toml: modules.max_bend_deg", "at most 64.01 degrees", "touch", "found 70"),
+    ),
+    Case(
+        name="a robot of segments and modules",
+        spoil=write("robot.toml", ROBOT + JOINTED.partition("\n")[2].replace("simulation", "b")),
+        words=("robot.toml", "either [[segment]] tables or a [modules] table", "both"),
+    ),
+    Case(
         name="base not finite",
         swap=("[0, 0, 0]", "[0, inf, 0]"),
         words=("scenario.toml: robot.base_position_mm[1]", "finite", "inf"),
@@ -431,7 +464,7 @@ CASES = [
         name="check some other TOML",
         spoil=write("notes.toml", "a = 1"),
         argv=("check", "notes.toml"),
-        words=("notes.toml", "[[segment]]", "[robot]"),
+        words=("notes.toml", "[[segment]]", "[modules]", "[robot]"),
     ),
     Case(
         name="target is not a place",

@@ -89,6 +89,7 @@ def test_ctrl_c_before_the_first_step(
     [
         ("hachen2025", ("a good robot", "40 to 90 mm", "tip at home", "20 mm/s")),
         ("opencr_v4", ("a good robot", "62.5 mm", "counted in the motor")),
+        ("qin2020", ("130 mm from joint", "39.09 deg", "of 18 holes", "0, 650, 0 mm", "200 mm/s")),
         (str(EXAMPLES / "robots" / "endoscope.toml"), ("insertion", "0 to 120 mm", "0, 0, 12 mm")),
         (FREE, ("a good scenario", "free space", "4 legs")),
         (TUBE, ("a good scenario", "winding tube", "mm; 1")),

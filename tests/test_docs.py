@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from sinuous.files import build
+from sinuous.robots.jointed_tables import JointedTable
 from sinuous.robots.pcc_tables import PccTable
 from sinuous.scenario.tables import ScenarioTable
 
@@ -20,9 +21,10 @@ def blocks(document: str, language: str) -> list[str]:
 
 
 def test_the_files_shown_are_valid() -> None:
-    scenario, robot = blocks("docs/files.md", "toml")
+    scenario, segments, modules = blocks("docs/files.md", "toml")
     build(ScenarioTable, tomllib.loads(scenario), file="docs/files.md")
-    build(PccTable, tomllib.loads(robot), file="docs/files.md")
+    build(PccTable, tomllib.loads(segments), file="docs/files.md")
+    build(JointedTable, tomllib.loads(modules), file="docs/files.md")
 
 
 def test_the_shortest_example_runs(

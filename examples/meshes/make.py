@@ -81,6 +81,15 @@ def save(mesh: trimesh.Trimesh, name: str) -> None:
 WINDING = route((0.045, 0, 0), (0.075, 85, 0), (0.105, -120, 25))
 INVERTED_U = route((0.045, 0, 0), (0.15, 180, 0), (0.03, 0, 0))
 HOLE = np.array([0.012, 0.008])
+# A vessel along y with a port to look in by: radius at every station.
+VESSEL = np.column_stack(
+    [
+        np.concatenate([np.linspace(-0.04, 0.19, 12), np.linspace(0.21, 0.33, 9)]),
+        np.concatenate([np.full(12, 0.058), np.linspace(0.085, 0.3, 9)]),
+    ]
+)
+VESSEL_END = np.array([[0.45, 0.3], [0.58, 0.3], [0.71, 0.3]])
+BEAM = np.array([[-0.35, 0.43, 0.11], [0.35, 0.43, 0.11]])
 POST = np.array([[0.012, -0.05, 0.142], [0.012, 0.05, 0.142]])
 
 
@@ -93,6 +102,10 @@ def main() -> None:
     across = plate(0.1, radius=0.056, thickness=0.006, hole=HOLE, hole_radius=0.013)
     save(across, "plate.stl")
     save(shapes.capsule(*POST, 0.007, sections=16), "post.stl")
+    along, radius = np.concatenate([VESSEL, VESSEL_END]).T
+    axis = np.outer(along, [0.0, 1.0, 0.0])
+    save(shapes.tube(axis, radius, sections=40), "vessel.stl")
+    save(shapes.capsule(*BEAM, 0.025, sections=16), "beam.stl")
 
 
 if __name__ == "__main__":

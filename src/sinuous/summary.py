@@ -32,6 +32,11 @@ def summarise(recording: Recording, *, wall_time: float | None = None) -> dict[s
         median, 99th percentile and maximum of the controller's wall-clock time per step
     `real_time_factor`
         simulated time by wall-clock time of the whole run; above 1 is faster than real time
+    `teleop`
+        None without an operator's hand; else `tracking_rms_m` and `tracking_max_m`, distance from
+        the tip to where it should be at every tick; `felt_force_rms_n` and `felt_force_max_n`, the
+        force fed back; `channel_energy_least_j`, below zero if the channel made energy;
+        `fault_ticks`, in which an end held still because of a fault
     `seed`, `versions`
         what is needed to run it again
 
@@ -50,8 +55,22 @@ def summarise(recording: Recording, *, wall_time: float | None = None) -> dict[s
         "solver_failures": recording.status.count(FAILED),
         "solve_time_s": _times(recording.solve_time),
         "real_time_factor": _finite(simulated / wall_time) if wall_time else None,
+        "teleop": _by_hand(recording) if len(recording.signals) else None,
         "seed": recording.header.seed,
         "versions": dict(recording.header.versions),
+    }
+
+
+def _by_hand(recording: Recording) -> dict[str, float | int | None]:
+    error = tip_error(recording.signal("tip_m"), recording.signal("desired_m"))
+    felt = np.linalg.norm(recording.signal("felt_n"), axis=1)
+    return {
+        "tracking_rms_m": _finite(np.sqrt(np.mean(error**2))),
+        "tracking_max_m": _finite(np.max(error)),
+        "felt_force_rms_n": _finite(np.sqrt(np.mean(felt**2))),
+        "felt_force_max_n": _finite(np.max(felt)),
+        "channel_energy_least_j": _finite(min(0.0, float(np.min(recording.signal("channel_j"))))),
+        "fault_ticks": int(np.count_nonzero(recording.signal("fault"))),
     }
 
 

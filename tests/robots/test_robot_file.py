@@ -115,7 +115,7 @@ def test_the_fields_arrive_in_si(tmp_path: Path) -> None:
 
 
 def test_presets_are_listed_and_load_with_both_sets_of_limits() -> None:
-    assert preset_names() == ["hachen2025", "opencr_v4", "opencr_v6"]
+    assert preset_names() == ["hachen2025", "opencr_v4", "opencr_v6", "qin2020"]
     for name in preset_names():
         for limits in ("simulation", "hardware"):
             robot = load_robot(name, limits=limits)
@@ -158,7 +158,7 @@ def test_opencr(name: str, lengths: tuple[float, ...]) -> None:
     assert robot.lengths(robot.home) == pytest.approx(np.repeat(np.cumsum(lengths), 3))
 
 
-@pytest.mark.parametrize("name", ["hachen2025", "opencr_v4", "opencr_v6"])
+@pytest.mark.parametrize("name", preset_names())
 def test_every_number_of_a_preset_says_where_it_comes_from(name: str) -> None:
     table = ""
     previous = ""
@@ -352,7 +352,9 @@ def test_unknown_preset() -> None:
         "hachen2052: expected a preset or the path of a robot file ending in .toml, "
         "found neither. Did you mean hachen2025?"
     )
-    with pytest.raises(InputError, match=r"Known presets: hachen2025, opencr_v4, opencr_v6\."):
+    with pytest.raises(
+        InputError, match=r"Known presets: hachen2025, opencr_v4, opencr_v6, qin2020\."
+    ):
         load_robot("snake")
 
 

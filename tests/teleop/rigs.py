@@ -27,6 +27,7 @@ FREE = ErrorForce()
 WALLED = Together((FREE, BoxForce(low=(-BOUNDARY, -BOUNDARY), high=(BOUNDARY, BOUNDARY))))
 C1, C2 = ModifiedWaves.c1(), ModifiedWaves.c2()
 LAG = 0.05  # of the follower [s]
+STILL = 1e-9  # [m/s]: a source of motion leaves rounding where it stands
 
 
 def smooth(share: float) -> float:

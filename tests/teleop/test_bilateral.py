@@ -28,6 +28,7 @@ from .rigs import (
     DT,
     FREE,
     PLANE,
+    STILL,
     TICKS,
     WALLED,
     B,
@@ -38,6 +39,7 @@ from .rigs import (
 )
 
 ROUNDING = 1e-12
+K_B = 10.0  # [N s/m], at most
 HOME = PLANE.place(np.zeros(2))
 # Of force and of place, some seconds after the last motion of a loop that settles in 0.3 s.
 SETTLED_FORCE, SETTLED_PLACE = 1e-4, 1e-5  # [N], [m]
@@ -72,9 +74,9 @@ def test_c1_and_c2_on_the_same_motion_differ_by_the_gain_alone() -> None:
 def test_at_rest_the_force_felt_is_the_follower_s_of_one_delay_ago(scheme: ModifiedWaves) -> None:
     operator = MoveAndWait(stops=np.array([[0.05, 0.03], [0.09, 0.06]]), patience=0.6)
     r = run(rig(operator, scheme=scheme), 6.0)
-    still = np.all(r.V == 0.0, axis=1) & (r.time > DELAY)
+    still = np.all(np.abs(r.V) < STILL, axis=1) & (r.time > DELAY)
     assert np.sum(still) > 1000
-    np.testing.assert_allclose(r.F_m[still], late(r.F_s)[still], rtol=0, atol=ROUNDING)
+    np.testing.assert_allclose(r.F_m[still], late(r.F_s)[still], rtol=0, atol=K_B * STILL)
     moving = ~still & (r.time > DELAY)
     assert np.max(np.abs(r.F_m - late(r.F_s))[moving]) > 0.5  # else there was nothing to show
 
@@ -121,7 +123,7 @@ def test_a_step_of_force_comes_back_one_delay_later_and_goes_forward_two() -> No
 
 
 def test_a12_the_offset_at_rest_is_what_the_force_and_the_delays_say() -> None:
-    r = run(rig(ImpedanceOperator(to_and_hold(np.array([0.095, -0.09])))), 12.0)
+    r = run(rig(ImpedanceOperator(to_and_hold(np.array([0.095, -0.09])))), 8.0)
     offset = r.X_sd[-1] - r.X[-1]
     assert np.max(np.abs(r.F_s[-1])) > 0.1
     # The low-pass is a tick ahead of (16).
@@ -131,9 +133,9 @@ def test_a12_the_offset_at_rest_is_what_the_force_and_the_delays_say() -> None:
 
 def test_a12_the_offset_vanishes_with_the_force() -> None:
     def goal(t: float) -> Array:
-        return to_and_hold(np.array([0.095, -0.09]))(t) if t < 6.0 else np.zeros(2)
+        return to_and_hold(np.array([0.095, -0.09]))(t) if t < 4.0 else np.zeros(2)
 
-    r = run(rig(ImpedanceOperator(goal)), 14.0)
+    r = run(rig(ImpedanceOperator(goal)), 9.0)
     np.testing.assert_allclose(r.F_s[-1], 0.0, atol=SETTLED_FORCE)
     np.testing.assert_allclose(r.X_sd[-1], r.X[-1], atol=SETTLED_PLACE)
 
@@ -161,10 +163,16 @@ def test_no_delay_is_one_tick_each_way() -> None:
     np.testing.assert_allclose(r.F_m, late(r.F_s, 1) + 0.5 * B * r.V, rtol=0, atol=ROUNDING)
 
 
-def test_standard_waves_work_too() -> None:
-    r = run(rig(ImpedanceOperator(wave_about()), scheme=StandardWaves()), 10.0)
+@pytest.mark.parametrize("delay", [0.0, 0.2])
+def test_standard_waves_stay_stable_though_they_lose_nothing(delay: float) -> None:
+    """A device whose F_m is of the velocity before makes energy in every tick: they diverge."""
+    goal = ImpedanceOperator(lambda t: wave_about()(t) if t < 6.0 else np.zeros(2))
+    r = run(rig(goal, scheme=StandardWaves(), delay=delay), 20.0)
     assert np.max(np.abs(r.X_sd - r.X)) < 0.06
     assert np.std(r.X_sd) > 0.5 * np.std(r.X)
+    np.testing.assert_allclose(r.F_m[-1], 0.0, atol=0.01)
+    roughness = np.max(np.abs(np.diff(r.V[-1000:], axis=0)))
+    assert roughness < 1e-5  # [m/s] from tick to tick: nothing rings
 
 
 def test_two_machines_are_the_same_as_one() -> None:
@@ -264,10 +272,10 @@ def test_what_is_not_finite_makes_an_end_hold_still_and_say_so(where: str, bad: 
 
 
 def test_a_loop_that_runs_away_ends_in_the_safe_state_and_not_in_nan() -> None:
-    """A device too light for its damping: the explicit step is unstable."""
-    heavy_waves = ModifiedWaves(impedance=500.0, gain=1.0)
-    teleop = rig(ImpedanceOperator(wave_about()), scheme=heavy_waves)
-    assert 2.0 * LeaderDevice().mass < DT * 500.0
+    """A hand too strong for its tick and the device's mass: its own explicit damper is unstable."""
+    hand = ImpedanceOperator(wave_about(), damping=1e4)
+    assert DT * hand.damping > 2.0 * (LeaderDevice().mass + DT * C2.damping * 2.25)
+    teleop = rig(hand)
     state, faults = teleop.init(HOME), set[str]()
     for _ in range(3000):
         state, signals = teleop.step(state, HOME)
@@ -288,7 +296,7 @@ def lose(fraction: float, seed: int) -> Any:
 
 
 def test_a_lost_packet_is_a_wave_of_zero_and_keeps_the_channel_passive() -> None:
-    r = run(rig(ImpedanceOperator(wave_about())), 20.0, disturb=lose(0.3, seed=1))
+    r = run(rig(ImpedanceOperator(wave_about())), 6.0, disturb=lose(0.3, seed=1))
     assert r.ledger.least.channel >= -ROUNDING
     assert np.max(np.abs(r.X_sd - r.X)) > 0.02  # what is lost stays away
 

@@ -24,7 +24,7 @@ def test_the_channel_never_gives_more_than_it_took(
 ) -> None:
     r = run(rig(operator, scheme=scheme, delay=delay), 6.0)
     assert r.ledger.least.channel >= -ROUNDING
-    assert r.ledger.energies.channel > 1e-3
+    assert r.ledger.energies.channel > 1e-6
 
 
 def test_the_channel_s_energy_is_the_sum_of_the_identity_s_terms() -> None:
@@ -47,23 +47,20 @@ def test_the_channel_s_energy_is_the_sum_of_the_identity_s_terms() -> None:
 
 
 def test_all_energy_is_somewhere() -> None:
-    """Hand, device, ports and follower; what is left is what holding a force for a tick makes.
+    """Hand, device, channel and follower: nothing is made or lost between the parts.
 
     On the wave side the device's mass is M / scale, for its speed is scale v and forces are not
-    scaled. Semi-implicit Euler loses M |dv|^2 / 2 in every tick.
+    scaled. Euler's step loses M |dv|^2 / 2.
     """
     r, mass = run(rig(CONTACT), 8.0), LeaderDevice().mass / 2.25
-    final = r.state.leader.v * PLANE.scale
-    V = np.concatenate([r.V, final[None]])
-    dX = DT * V[1:]
-    kinetic = 0.5 * mass * np.sum(final**2)
+    V = np.concatenate([np.zeros((1, 2)), r.V])
+    kinetic = 0.5 * mass * np.sum(V[-1] ** 2)
     integration = 0.5 * mass * np.sum(np.diff(V, axis=0) ** 2)
-    held = np.sum(r.F_m * (dX - DT * r.V))
     e = r.ledger.energies
-    total = e.operator + kinetic + integration + held + e.channel + e.follower
+    total = e.operator + kinetic + integration + e.channel + e.follower
     assert total == pytest.approx(0.0, abs=ROUNDING)
-    assert -e.operator == pytest.approx(np.sum(r.F_h * dX), abs=ROUNDING)
-    assert abs(held) < 0.02 * e.channel
+    moved = np.diff(r.X, axis=0)
+    assert -e.operator == pytest.approx(np.sum(r.F_h[:-1] * moved), abs=1e-9)
 
 
 def test_the_follower_with_its_wall_takes_in_what_springs_and_lag_hold() -> None:

@@ -85,6 +85,21 @@ def test_a_body_is_slim_between_its_disks_and_solid_outside_them() -> None:
     assert np.all(outward > 0.0)
 
 
+def test_rigid_modules_are_tubes_with_flat_ends_and_slim_between_them() -> None:
+    """Two tubes along y of 40 mm, a gap of 20 mm around a joint; plates are no disks."""
+    y = np.array([0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0, 100.0])
+    points = np.stack([0.0 * y, y, 0.0 * y], axis=1)
+    plates, radius = np.array([[0, 4], [6, 10]]), 8.0
+    solid = body(points, np.full(len(y), radius), plates.ravel(), RED, plates)
+    corners = solid.polygons.reshape(-1, 3)
+    thick = np.hypot(corners[:, 0], corners[:, 2]) > 0.9 * radius
+    along = corners[thick][:, 1]
+    assert np.all((along <= 40.0) | (along >= 60.0))
+    assert (along.min(), along.max()) == (0.0, 100.0)
+    between = np.abs(corners[:, 1] - 50.0) < 1.0
+    assert np.max(np.hypot(*corners[between][:, [0, 2]].T)) == pytest.approx(0.5 * radius)
+
+
 @pytest.mark.parametrize("points", [np.zeros((3, 3)), np.zeros((1, 3))])
 def test_a_body_without_length_is_nothing(points: Array) -> None:
     assert len(wire(points, RADIUS, RED).polygons) == 0

@@ -178,15 +178,16 @@ def _fold(
     Arguments:
         along, across: the way from A_k to A_N [m]
     """
-    size = 2.0 * L * sqrt(j - 1)
+    square, size = along * along + across * across, 2.0 * L * sqrt(j - 1)
     sine_half = sqrt(slack) / size
-    cosine_half = sqrt(max(along * along + across * across - ((j - 2) * L) ** 2, 0.0)) / size
+    cosine_half = sqrt(max(square - ((j - 2) * L) ** 2, 0.0)) / size
     cosine = cosine_half * cosine_half - sine_half * sine_half
     sine = 2.0 * sine_half * cosine_half
-    # A_N seen along link k, in links. Turned back by its angle, link k is on the side of A_k+1,r.
-    s, t = _unit(2.0 * cosine_half * cosine_half + (j - 2) * cosine, (j - 1) * sine)
-    u, v = _unit(along, across)
-    u, v = u * s + v * t, v * s - u * t
+    u, v = 1.0, 0.0  # link k, on its reference place if A_N is on A_k
+    if square > 0.0:
+        # A_N seen along link k. Turned back by its angle, link k is on the side of A_k+1,r.
+        s, t = L * (2.0 * cosine_half * cosine_half + (j - 2) * cosine), L * (j - 1) * sine
+        u, v = (along * s + across * t) / square, (across * s - along * t) / square
     return (u, v), (u * cosine - v * sine, v * cosine + u * sine)
 
 

@@ -24,7 +24,7 @@ from sinuous.robots.robot_tables import (
 class ModulesTable:
     """`[modules]`: all alike, each a universal joint and a tube between two plates behind it."""
 
-    number: Annotated[int, Field(ge=1)]
+    count: Annotated[int, Field(ge=1)]
     holes: Annotated[int, Field(ge=CABLES)]  # in every plate, evenly spaced
     radius: Annotated[Length, Positive]
     plate_offset: Annotated[Length, Positive]  # from a plate to the centre of the joint beside it
@@ -33,18 +33,18 @@ class ModulesTable:
     max_bend: Annotated[Angle, Positive] | None = None
 
     def __post_init__(self) -> None:
-        needed = CABLES * self.number
+        needed = CABLES * self.count
         if self.holes % CABLES or self.holes < needed:
             raise FieldError(
                 "holes",
                 expected=f"a multiple of {CABLES} and at least {needed}, {CABLES} for the cables "
-                f"of each of {self.number} modules",
+                f"of each of {self.count} modules",
                 remedy="Take more holes or fewer modules: cables that share a hole would rub.",
             )
-        if len(self.orders) != self.number:
+        if len(self.orders) != self.count:
             raise FieldError(
                 "joint_order",
-                expected=f"one order, or {self.number}, one for each joint",
+                expected=f"one order, or {self.count}, one for each joint",
                 remedy="Give as many orders as modules.",
             )
         contact = contact_bend(self.radius, self.plate_offset)
@@ -60,7 +60,7 @@ class ModulesTable:
     def orders(self) -> tuple[JointOrder, ...]:
         """In which every joint turns."""
         one = self.joint_order
-        return one if isinstance(one, tuple) else (one,) * self.number
+        return one if isinstance(one, tuple) else (one,) * self.count
 
     @property
     def bend_limit(self) -> float:
@@ -72,7 +72,7 @@ class ModulesTable:
     def cables_at_home(self) -> list[float]:
         """Length [m] of every module's cables in the straight robot."""
         one = self.tube_length + 2.0 * self.plate_offset
-        return [k * one for k in range(1, self.number + 1)]
+        return [k * one for k in range(1, self.count + 1)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,14 +108,14 @@ class JointedTable(RobotTable):
         ranges = chosen.cable_length
         return JointedRobot(
             name=self.name,
-            joints=modules.number,
+            joints=modules.count,
             holes=modules.holes,
             radius=modules.radius,
             plate_offset=modules.plate_offset,
             tube_length=modules.tube_length,
             orders=modules.orders,
             bend_limit=modules.bend_limit,
-            cable_lengths=() if ranges is None else tuple(one_each(ranges, modules.number)),
+            cable_lengths=() if ranges is None else tuple(one_each(ranges, modules.count)),
             speed=SpeedLimits(cable=chosen.cable_speed, insertion=chosen.insertion_speed or 0.0),
             insertion=self.insertion and self.insertion.part,
             tool=self.tool and self.tool.part,

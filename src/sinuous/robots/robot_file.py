@@ -58,17 +58,21 @@ def load_jointed(name_or_path: str | Path, *, limits: str = "simulation") -> Joi
 
 def _table(path: Path) -> PccTable | JointedTable:
     data, file = read_toml(path), str(path)
-    if "modules" in data and "segment" in data:
-        raise InputError(
-            file=file,
-            field="modules",
-            expected="either [[segment]] tables or a [modules] table",
-            found="both",
-            remedy="Keep one of them: a robot bends along its segments or at its joints.",
-        )
-    if "modules" in data:
-        return build(JointedTable, data, file=file)
-    return build(PccTable, data, file=file)
+    match "segment" in data, "modules" in data:
+        case True, False:
+            return build(PccTable, data, file=file)
+        case False, True:
+            return build(JointedTable, data, file=file)
+        case True, True:
+            found, remedy = "both", "Keep one: a robot bends along segments or at joints."
+        case _:
+            found, remedy = "neither", "Say what bends: docs/files.md has an example of each."
+    raise InputError(
+        file=file,
+        expected="either [[segment]] tables or a [modules] table",
+        found=found,
+        remedy=remedy,
+    )
 
 
 def _other_kind(name_or_path: str | Path, expected: str, found: str) -> InputError:

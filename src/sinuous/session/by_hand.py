@@ -86,7 +86,7 @@ class ByHand:
     def _work(self) -> Array:
         """Energy (k, 3) [J] taken in during each tick, see `teleop.ledger`."""
         dt = self.tick
-        rows = [(a.F_m @ a.V * dt, a.F_h @ a.dX, b.F_s @ b.V_sd * dt) for _, a, b in self._ticks]
+        rows = [(a.F_m @ a.V * dt, a.F_h @ a.V * dt, b.F_s @ b.V_sd * dt) for _, a, b in self._ticks]
         into_leader, from_hand, into_follower = np.array(rows).T
         return np.column_stack([into_leader - into_follower, -from_hand, into_follower])
 

@@ -10,7 +10,7 @@ from sinuous.arrays import Array, ArrayLike
 from sinuous.teleop import kernels
 from sinuous.teleop.drift import DriftCorrection
 from sinuous.teleop.force import Motion, VirtualForce
-from sinuous.teleop.leader import LeaderDevice
+from sinuous.teleop.leader import LeaderDevice, Load
 from sinuous.teleop.link import Packet
 from sinuous.teleop.mapping import Mapping
 from sinuous.teleop.operators import Felt, O, Operator
@@ -22,7 +22,8 @@ class LeaderState(NamedTuple, Generic[O]):
 
     Arguments:
         tick: how many have gone by
-        x, v: of the device (A,) [m], [m/s]
+        x: of the device (A,) [m]
+        v: its velocity in the tick before (A,) [m/s]
         operator: what the operator remembers
         port: what the port remembers
     """
@@ -38,11 +39,11 @@ class LeaderSignals(NamedTuple):
     """What there is to see of the leader's end in a tick.
 
     Arguments:
-        x, v: of the device when the tick begins (A,) [m], [m/s]
-        F_h: the operator's force during the tick (A,) [N]
+        x: of the device when the tick begins (A,) [m]
+        v: its velocity during the tick (A,) [m/s]
+        F_h: the operator's force (A,) [N]
         F_m: the force fed back (A,) [N]
         X, V: x and v on the wave side (A,) [m], [m/s]
-        dX: how far the device moves in the tick, on the wave side (A,) [m]
         wave: received; zero if nothing came (A,)
         fault: why the end is in its safe state, in words; empty if all is well
     """
@@ -53,7 +54,6 @@ class LeaderSignals(NamedTuple):
     F_m: Array
     X: Array
     V: Array
-    dX: Array
     wave: Array
     fault: str
 
@@ -121,6 +121,10 @@ class LeaderEnd(Generic[O]):
     def _zero(self) -> Array:
         return np.zeros(self.mapping.scale.size)
 
+    @cached_property
+    def _damping(self) -> Array:
+        return self.scheme.damping * self.mapping.scale
+
     def init(self, X: Array) -> LeaderState[O]:
         """At rest where the mapping puts the follower at X (A,) [m] of the wave side."""
         x = X / self.mapping.scale
@@ -132,16 +136,17 @@ class LeaderEnd(Generic[O]):
     ) -> tuple[LeaderState[O], LeaderSignals, Packet]:
         """One tick: what is felt, what the device does, and what is sent."""
         tick, x, v, hand, port = state
-        scale, dt = self.mapping.scale, self.scheme.dt
-        X, V = scale * x, scale * v
+        scale, dt, device = self.mapping.scale, self.scheme.dt, self.device
         wave = self._zero if received is None else received.wave
+        load = Load(self.scheme.force_at_rest(wave), self._damping)
+        hand, F_h = self.operator.step(hand, Felt(tick * dt, x, v, load), device, dt)
+        place, v = device.step(x, v, F_h, load, dt)
+        X, V = scale * x, scale * v
         port, F_m, sent = self.scheme.leader_step(port, V, wave)
-        hand, F_h = self.operator.step(hand, Felt(tick * dt, x, v, F_m), self.device, dt)
-        place, speed = self.device.step(x, v, F_h, F_m, dt)
         if not kernels.finite(F_m, sent, place):
             return self._rest(state, wave)
-        signals = LeaderSignals(x, v, F_h, F_m, X, V, scale * (dt * speed), wave, "")
-        return LeaderState(tick + 1, place, speed, hand, port), signals, Packet(sent, X)
+        signals = LeaderSignals(x, v, F_h, F_m, X, V, wave, "")
+        return LeaderState(tick + 1, place, v, hand, port), signals, Packet(sent, X)
 
     def _rest(
         self, state: LeaderState[O], wave: Array
@@ -149,7 +154,7 @@ class LeaderEnd(Generic[O]):
         zero, X = self._zero, self.mapping.scale * state.x
         what = "the operator's force is" if np.all(np.isfinite(wave)) else "what was received is"
         fault = f"holding still: {what} not finite"
-        signals = LeaderSignals(state.x, zero, zero, zero, X, zero, zero, wave, fault)
+        signals = LeaderSignals(state.x, zero, zero, zero, X, zero, wave, fault)
         return state._replace(tick=state.tick + 1, v=zero), signals, Packet(zero, X)
 
 

@@ -67,12 +67,13 @@ def standard_follower(b: float, F: Array, received: Array, desired: Array, sent:
 
 @inner
 def move_device(
-    mass: float, dt: float, limit: float, x: Array, v: Array, F_h: Array, F_m: Array,
-    place: Array, speed: Array,
+    mass: float, dt: float, limit: float, x: Array, v: Array, F_h: Array,
+    force: Array, damping: Array, place: Array, speed: Array,
 ) -> None:  # fmt: skip
-    """(27) by semi-implicit Euler, and a stop on either side."""
+    """(27) by implicit Euler against a load force + damping v, and a stop on either side."""
     for i in range(x.size):
-        speed[i] = v[i] + dt / mass * (F_h[i] - F_m[i])
+        momentum = mass * v[i] + dt * (F_h[i] - force[i])
+        speed[i] = momentum / (mass + dt * damping[i])
         place[i] = x[i] + dt * speed[i]
         if abs(place[i]) > max(limit, abs(x[i])):  # farther beyond the stop than it was
             place[i] = max(min(place[i], max(x[i], limit)), min(x[i], -limit))
@@ -80,10 +81,12 @@ def move_device(
 
 
 @inner
-def drive(mass: float, dt: float, speed: Array, v: Array, F_m: Array, F_h: Array) -> None:
+def drive(
+    mass: float, dt: float, speed: Array, v: Array, force: Array, damping: Array, F_h: Array
+) -> None:
     """(27) the other way round: the force that takes the device from v to a speed in a tick."""
     for i in range(v.size):
-        F_h[i] = F_m[i] + mass / dt * (speed[i] - v[i])
+        F_h[i] = force[i] + damping[i] * speed[i] + mass / dt * (speed[i] - v[i])
 
 
 @inner

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import inf, isnan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,12 +11,26 @@ from sinuous.teleop import kernels
 from sinuous.teleop.checks import positive
 
 
+class Load(NamedTuple):
+    """What a device works against in a tick: F_m = force + damping v.
+
+    Arguments:
+        force: that it would feel at rest (A,) [N]
+        damping: with which the port answers its velocity at once (A,) [N s/m]
+    """
+
+    force: Array
+    damping: Array
+
+
 @dataclass(frozen=True, kw_only=True)
 class LeaderDevice:
     """A particle between the operator's force and the one fed back: F_h - F_m = M x'' (27).
 
-    A port that answers a velocity with a force D v is integrated explicitly: M must be above
-    dt D / 2, with D the sum of what damps the device, K b scale of the waves and the hand's own.
+    The velocity v of a tick takes x as far as x + dt v, and F_m is of the same v. So what the
+    device gives to the port, F_m . dt v, is what the port takes, whatever M and the damping are. An
+    F_m of the velocity before would make energy in every tick: standard waves, which have no loss
+    to pay for it, then diverge.
 
     Arguments:
         mass: M_m [kg]
@@ -33,14 +48,22 @@ class LeaderDevice:
         if isnan(self.limit) or self.limit <= 0.0:
             raise ValueError(f"limit must be positive, not {self.limit}")
 
-    def step(self, x: Array, v: Array, F_h: Array, F_m: Array, dt: float) -> tuple[Array, Array]:
-        """Position [m] and velocity [m/s] (A,) after a tick of dt [s] under two forces [N]."""
+    def step(self, x: Array, v: Array, F_h: Array, load: Load, dt: float) -> tuple[Array, Array]:
+        """Position after a tick of dt [s], and velocity during it (A,) [m], [m/s].
+
+        Arguments:
+            x: position before (A,) [m]
+            v: velocity of the tick before (A,) [m/s]
+            F_h: the operator's force (A,) [N]
+            load: what it works against
+        """
         place, speed = np.empty(x.size), np.empty(x.size)
-        kernels.move_device(self.mass, dt, self.limit, x, v, F_h, F_m, place, speed)
+        force, damping = load
+        kernels.move_device(self.mass, dt, self.limit, x, v, F_h, force, damping, place, speed)
         return place, speed
 
-    def force_for(self, speed: Array, v: Array, F_m: Array, dt: float) -> Array:
+    def force_for(self, speed: Array, v: Array, load: Load, dt: float) -> Array:
         """The operator's force (A,) [N] that takes the device from velocity v to speed [m/s]."""
         F_h = np.empty(v.size)
-        kernels.drive(self.mass, dt, speed, v, F_m, F_h)
+        kernels.drive(self.mass, dt, speed, v, load.force, load.damping, F_h)
         return F_h

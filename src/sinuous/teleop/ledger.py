@@ -18,7 +18,7 @@ class Energies(NamedTuple):
 
     Arguments:
         channel: by ports and links, F_m . V_m dt - F_s . V_sd dt
-        operator: by the operator's hand, - F_h . dX_m
+        operator: by the operator's hand, - F_h . V_m dt
         follower: by the follower with its virtual walls, F_s . V_sd dt
     """
 
@@ -29,10 +29,6 @@ class Energies(NamedTuple):
 
 class Ledger:
     """Watches every tick and adds up.
-
-    The channel's is in the samples of its ports, for which the identity of notes A11 holds. What
-    the device gives in a tick, F_m . dX_m, differs from the port's F_m . V_m dt by what holding
-    a force for a tick makes of it.
 
     Arguments:
         dt: time of a tick [s]
@@ -50,7 +46,7 @@ class Ledger:
         out = self._dt * work(at_follower.F_s, at_follower.V_sd)
         now = Energies(
             channel + self._dt * work(at_leader.F_m, at_leader.V) - out,
-            operator - work(at_leader.F_h, at_leader.dX),
+            operator - self._dt * work(at_leader.F_h, at_leader.V),
             follower + out,
         )
         self.energies = now

@@ -79,14 +79,15 @@ class MoveAndWait:
         state = self._after(state, felt)
         speed, share = np.empty(felt.x.size), min((felt.time + dt - state.since) / self.moving, 1.0)
         kernels.least_jerk(share, dt, state.start, self.stops[state.stops - 1], felt.x, speed)
-        return state, device.force_for(speed, felt.v, felt.F_m, dt)
+        return state, device.force_for(speed, felt.v, felt.load, dt)
 
     def _after(self, state: Waiting, felt: Felt) -> Waiting:
         """What is to be done now that a force is felt."""
         if felt.time < state.since + self.moving:
             return state
-        if kernels.apart(felt.F_m, state.force) > self.tolerance:
-            return state._replace(calm=felt.time, force=felt.F_m)
+        force = felt.load.force
+        if kernels.apart(force, state.force) > self.tolerance:
+            return state._replace(calm=felt.time, force=force)
         if felt.time < state.calm + self.patience or state.stops == len(self.stops):
             return state
         return Waiting(
@@ -94,5 +95,5 @@ class MoveAndWait:
             start=felt.x,
             since=felt.time,
             calm=felt.time + self.moving,
-            force=felt.F_m,
+            force=force,
         )

@@ -9,7 +9,7 @@ import numpy as np
 from sinuous.arrays import Array, ArrayLike
 from sinuous.teleop import kernels
 from sinuous.teleop.checks import zero_or_more
-from sinuous.teleop.leader import LeaderDevice
+from sinuous.teleop.leader import LeaderDevice, Load
 
 Goal = Callable[[float], ArrayLike]
 """Where the hand wants to be (A,) [m], in the leader's coordinates, by time [s]."""
@@ -18,18 +18,19 @@ O = TypeVar("O")  # noqa: E741  what an operator remembers
 
 
 class Felt(NamedTuple):
-    """What the hand feels.
+    """What the hand feels when a tick begins.
 
     Arguments:
         time: [s]
-        x, v: of the device (A,) [m], [m/s]
-        F_m: force fed back (A,) [N]
+        x: where the device is (A,) [m]
+        v: its velocity in the tick before (A,) [m/s]
+        load: what it works against
     """
 
     time: float
     x: Array
     v: Array
-    F_m: Array
+    load: Load
 
 
 class Operator(Protocol[O]):
@@ -65,7 +66,7 @@ class Prescribed:
         speed = np.empty(felt.x.size)
         now = _place(self.goal, felt.time, felt.x)
         kernels.difference(_place(self.goal, felt.time + dt, felt.x), now, dt, speed)
-        return None, device.force_for(speed, felt.v, felt.F_m, dt)
+        return None, device.force_for(speed, felt.v, felt.load, dt)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ link's. Per axis and tick the channel between them absorbs F_m v_m - F_s v_sd.
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isnan
+from math import inf, isnan, sqrt
 from typing import NamedTuple, Protocol, Self
 
 import numpy as np
@@ -49,6 +49,15 @@ class Scheme(Protocol):
     @property
     def dt(self) -> float:
         """Time of a tick [s]."""
+        ...
+
+    @property
+    def damping(self) -> float:
+        """What the leader's port answers a velocity with at once [N s/m]."""
+        ...
+
+    def force_at_rest(self, received: Array) -> Array:
+        """F_m of a leader that stands still (A,) [N]; moving, damping v comes on top."""
         ...
 
     def leader_init(self, axes: int) -> PortState:
@@ -102,6 +111,15 @@ class StandardWaves:
         positive("impedance", self.impedance)
         positive("dt", self.dt)
 
+    @property
+    def damping(self) -> float:
+        """b [N s/m]."""
+        return self.impedance
+
+    def force_at_rest(self, received: Array) -> Array:
+        """F_m of a leader that stands still (A,) [N]."""
+        return -sqrt(2.0 * self.impedance) * received
+
     def leader_init(self, axes: int) -> PortState:
         """The leader's port, which remembers nothing."""
         return _NOTHING
@@ -140,8 +158,8 @@ class ModifiedWaves:
         F_m = F_r + K b v_m,  v_sd = (g_r - F_s) / b,  waves g / K forward and F_s / K back.
 
     The filter is explicit Euler, g <- g + lambda dt (w - g). What it becomes is sent, so that
-    lambda dt = 1 is no filter; that is a tick ahead of (16). For K >= 1/2 and lambda dt <= 1 the channel is passive, whatever b
-    and a constant delay; see `analysis.passivity`.
+    lambda dt = 1 is no filter; that is a tick ahead of (16). For K >= 1/2 and lambda dt <= 1 the
+    channel is passive, whatever b and a constant delay; see `analysis.passivity`.
 
     Arguments:
         impedance: b [N s/m]
@@ -191,6 +209,15 @@ class ModifiedWaves:
     def share(self) -> float:
         """Share of the way to its input that the low-pass goes in a tick: lambda dt."""
         return min(self.cutoff * self.dt, 1.0)
+
+    @property
+    def damping(self) -> float:
+        """K b [N s/m]."""
+        return self.gain * self.impedance
+
+    def force_at_rest(self, received: Array) -> Array:
+        """F_s of one delay ago (A,) [N] (19)."""
+        return self.gain * received
 
     def leader_init(self, axes: int) -> PortState:
         """The leader's port with an empty low-pass."""

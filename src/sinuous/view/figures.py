@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from sinuous.recording import Recording
+from sinuous.view.by_hand import by_hand_height, draw_by_hand
 from sinuous.view.curves import (
     NO_STEPS,
     draw_clearance,
@@ -33,7 +34,7 @@ def save_figures(recording: Recording, out: Path | str) -> list[Path]:
     """
     out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
-    return [
+    figures = [
         save(out / "shapes.png", (14.0, 6.6), lambda f: draw_shapes(f, recording)),
         save(out / "tip_error.png", WIDE, lambda f: _tip_error(f, recording)),
         save(out / "clearance.png", WIDE, lambda f: _clearance(f, recording)),
@@ -44,6 +45,10 @@ def save_figures(recording: Recording, out: Path | str) -> list[Path]:
         ),
         save(out / "solve_time.png", WIDE, lambda f: _solve_time(f, recording)),
     ]
+    if len(recording.signals):
+        size = (12.0, by_hand_height(recording))
+        figures.append(save(out / "by_hand.png", size, lambda f: draw_by_hand(f, recording)))
+    return figures
 
 
 def _tip_error(figure: Figure, recording: Recording) -> None:

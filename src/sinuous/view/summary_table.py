@@ -6,7 +6,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from sinuous.view.units import factor, millimetres, milliseconds
+from sinuous.view.units import factor, millijoules, millimetres, milliseconds, newtons
 
 NO_WALL = "no wall"
 
@@ -25,7 +25,20 @@ def summary_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         ("solve time, 99th percentile", milliseconds(times["p99"])),
         ("solve time, longest", milliseconds(times["max"])),
         ("real-time factor", factor(summary["real_time_factor"])),
+        *_by_hand(summary["teleop"]),
         ("seed", str(summary["seed"])),
+    ]
+
+
+def _by_hand(teleop: Mapping[str, Any] | None) -> list[tuple[str, str]]:
+    if teleop is None:
+        return []
+    return [
+        ("tip to desired, RMS", millimetres(teleop["tracking_rms_m"])),
+        ("force felt, RMS", newtons(teleop["felt_force_rms_n"])),
+        ("force felt, largest", newtons(teleop["felt_force_max_n"])),
+        ("energy made by the channel", millijoules(-teleop["channel_energy_least_j"])),
+        ("ticks held by a fault", _count(teleop["fault_ticks"])),
     ]
 
 

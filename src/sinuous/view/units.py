@@ -2,6 +2,7 @@
 
 MM_PER_M = 1e3
 MS_PER_S = 1e3
+MJ_PER_J = 1e3
 PERCENT = 1e2
 
 UNKNOWN = "-"
@@ -20,3 +21,15 @@ def milliseconds(value: float | None, missing: str = UNKNOWN) -> str:
 def factor(value: float | None, missing: str = UNKNOWN) -> str:
     """A ratio, as "12.3 x"."""
     return missing if value is None else f"{value:.3g} x"
+
+
+def newtons(value: float | None, missing: str = UNKNOWN) -> str:
+    """A force [N]."""
+    return missing if value is None else f"{value:.3f} N"
+
+
+def millijoules(value: float | None, missing: str = UNKNOWN) -> str:
+    """An energy [J], to the microjoule; none if it is zero."""
+    if value is None:
+        return missing
+    return f"{value * MJ_PER_J:.3f} mJ" if value else "none"

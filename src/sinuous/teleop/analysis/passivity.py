@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 
 from sinuous.arrays import Array, ArrayLike
-from sinuous.teleop.analysis.hybrid import low_pass
 from sinuous.teleop.waves import ModifiedWaves
 
 
@@ -13,13 +12,13 @@ def least_gain(omega: ArrayLike, *, cutoff: ArrayLike, delay: ArrayLike) -> Arra
     """The smallest K (...) with which the channel takes no energy out of a frequency.
 
     H + H^H of (31) is positive semidefinite if and only if 4 K (1 - r) >= 1 + |Phi|^2 - 2 r with
-    r = Re z, z = exp(-2 j omega T) Phi. The right side is |1 - z|^2, so that
+    r = Re z, z = exp(-2 j omega T) Phi, whatever b. The right side is |1 - z|^2, so that this is
+    K >= 1 / (4 Re(1 / (1 - z))), and 1/2 suffices for every filter with |Phi| <= 1 and every
+    constant delay. For the low-pass, with x = omega / lambda, s and c sine and cosine of omega T,
 
-        K >= 1 / (4 Re(1 / (1 - z))),
+        K >= 1/2 - x^2 / (2 (4 s^2 + 4 s c x + 2 x^2)):
 
-    whatever b. Since Re(1 / (1 - z)) >= 1/2 for |z| <= 1, K = 1/2 suffices for every filter with
-    |Phi| <= 1 and every constant delay; without a filter it is needed at every frequency. Where z
-    is 1 nothing is lost or made, and the answer is the limit of no filter, 1/2.
+    without it (x = 0) 1/2 is needed at every frequency, with it a little less.
 
     Arguments:
         omega: [rad/s]
@@ -27,9 +26,12 @@ def least_gain(omega: ArrayLike, *, cutoff: ArrayLike, delay: ArrayLike) -> Arra
         delay: T, one way [s]
     """
     w = np.asarray(omega, dtype=np.float64)
-    z = np.exp(-2j * w * np.asarray(delay, dtype=np.float64)) * low_pass(w, cutoff)
-    away = np.where(z == 1.0, 2.0, 1.0 - z)
-    return np.where(z == 1.0, 0.5, 0.25 / np.real(1.0 / away))
+    x = w / np.asarray(cutoff, dtype=np.float64)
+    angle = w * np.asarray(delay, dtype=np.float64)
+    s, c, x = np.broadcast_arrays(np.sin(angle), np.cos(angle), x)
+    away = 4.0 * s**2 + 4.0 * s * c * x + 2.0 * x**2  # zero only where nothing is lost or made
+    spared = np.divide(x**2, away, out=np.zeros(x.shape), where=away > 0.0)
+    return 0.5 - 0.5 * spared
 
 
 class PowerTerms(NamedTuple):

@@ -15,6 +15,9 @@ from sinuous.teleop.mapping import Mapping
 from sinuous.teleop.operators import Operator
 from sinuous.teleop.waves import ModifiedWaves
 
+# A leader slower than that stands still [m/s]; a source of motion leaves rounding.
+STILL = 1e-9
+
 
 def follow(teleop: Bilateral[Any], *, lag: float, duration: float) -> list[Signals]:
     """Teleoperate a point that follows its target with a first-order lag, from the origin.
@@ -65,7 +68,7 @@ def fidelity(signals: list[Signals], scheme: ModifiedWaves, ticks: int) -> Fidel
         filtered[k] = low
     distortion = V_sd - _late(filtered, ticks)
     error = np.sum((F_m - _late(F_s, ticks)) ** 2, axis=1)
-    still = np.all(V == 0.0, axis=1) & (np.arange(len(V)) > ticks)
+    still = np.all(np.abs(V) < STILL, axis=1) & (np.arange(len(V)) > ticks)
     return Fidelity(
         velocity=float(np.sqrt(np.mean(np.sum(distortion**2, axis=1)))),
         force=float(np.sqrt(np.mean(error))),
