@@ -249,3 +249,20 @@ def test_a_posture_far_from_home_does_not_tremble(horizon: int) -> None:
         state, _ = mpc.step(state, [-0.016, -0.224, -0.021])
         bodies.append(robot.points(state.c))
     assert np.max(np.ptp(np.array(bodies[-60:]), axis=0)) < 1e-6
+
+
+@pytest.mark.parametrize("name", ["qin2020", "opencr_v4"])
+def test_a_straight_robot_leaves_its_balance(name: str) -> None:
+    """A target straight behind the tip has no slope, one straight ahead is out of reach."""
+    robot = load_robot(name)
+    mpc = ShapeConstrainedMPC(robot, SafeZone.unbounded(), dt=0.02)
+    tip = robot.tip(robot.home)
+    state = mpc.init(robot.home)
+    for _ in range(60):
+        state, command = mpc.step(state, 0.8 * tip)
+    assert command.report.status is Status.AT_TARGET
+    state = mpc.init(robot.home)
+    for _ in range(60):
+        state, command = mpc.step(state, 1.2 * tip)
+        assert command.report.status is Status.BLOCKED
+        assert np.max(np.abs(command.rates)) < STEADY  # a hundredth of a millimetre a second

@@ -51,6 +51,7 @@ LATE = 2e-4
 TRUST, TRUST_FROM = 5e-4, 5
 
 # A tip this close to its target is there [m]; a slower one has nowhere to go [m/s].
+NUDGE = 1e-3  # bend by which a plan leaves a balance [rad]
 ARRIVED = 1e-5
 STILL = 3e-5
 
@@ -235,16 +236,28 @@ class ShapeConstrainedMPC:
         )  # fmt: skip
         return DenseProblem.of(first_problem(work, prepared.rows))
 
+    @cached_property
+    def _nudge(self) -> Array:
+        """A small bend (n,) to this side and that, from segment to segment."""
+        nudge = np.zeros(len(self.robot.home))
+        for k, column in enumerate(np.unique(self.robot.bend_limits.column)):
+            nudge[column : column + 2] = (-1.0) ** k * np.array([0.8, 0.6]) * NUDGE
+        return nudge
+
     def _take(self, solved: Solved, outcome: Outcome, began: float) -> tuple[MPCState, Command]:
+        status = self._status(outcome)
+        # Nothing is in the way and yet the tip does not move: a straight robot whose target is
+        # behind its tip sees no slope. Seen from a plan that is bent a little, there is one.
+        balanced = status is Status.BLOCKED and not len(outcome.what)
         after = MPCState(
             c=outcome.c,
-            plan=outcome.plan,
+            plan=outcome.plan + self._nudge if balanced else outcome.plan,
             contacts=outcome.contacts,
             points=outcome.points,
             clearance=outcome.clearance,
         )
         report = Report(
-            status=self._status(outcome),
+            status=status,
             solve_time=perf_counter() - began,
             workload=Workload(
                 qps=solved.qps,
