@@ -30,15 +30,19 @@ check: $(STAMP)
 	PYTHONWARNINGS=error $(BIN)/sinuous reproduce hachen2025 --quick --out out/check
 
 # Versions and hashes of all dependencies, for every platform and Python version.
+# Versions stay as they are where they can; make lock UPGRADE=--upgrade raises them.
 # The --no options keep paths, addresses and commands of this machine out of the file.
 LOCKER := $(if $(UV),$(UV),.venv/lock/bin/uv)
 lock:
 	test -n "$(UV)" || $(PYTHON) -m venv --without-pip .venv/lock
 	test -n "$(UV)" || $(PYTHON) -m pip --python .venv/lock/bin/python install --quiet uv
-	echo "# Every dependency with its hashes, from pyproject.toml by: make lock" > requirements.lock.part
+	cp requirements.lock requirements.lock.part
 	$(LOCKER) pip compile pyproject.toml --extra dev --universal --generate-hashes --quiet \
-		--no-header --no-annotate --no-emit-index-url --no-emit-find-links >> requirements.lock.part
-	mv requirements.lock.part requirements.lock
+		--no-header --no-annotate --no-emit-index-url --no-emit-find-links $(UPGRADE) \
+		--output-file requirements.lock.part > /dev/null
+	echo "# Every dependency with its hashes, from pyproject.toml by: make lock" > requirements.lock
+	cat requirements.lock.part >> requirements.lock
+	rm requirements.lock.part
 
 clean:
 	rm -rf .venv out dist build .pytest_cache .ruff_cache .hypothesis .import_linter_cache

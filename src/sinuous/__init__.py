@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from sinuous.reach import Reach, reaches
     from sinuous.recording.reader import read as read_recording
     from sinuous.recording.run import Recording, Sample
+    from sinuous.robots.jointed import JointedRobot
     from sinuous.robots.pcc import PccRobot
     from sinuous.robots.robot_file import load_robot
     from sinuous.scenario import Scenario, load_scenario
@@ -45,6 +46,7 @@ _HOME = {
     "Fibre": "sinuous.plants.fibre",
     "HierarchicalController": "sinuous.control.hierarchical",
     "InputError": "sinuous.errors",
+    "JointedRobot": "sinuous.robots.jointed",
     "KinematicPlant": "sinuous.plants.kinematic",
     "Leg": "sinuous.scenario.path",
     "LocalController": "sinuous.control.local",
@@ -99,6 +101,7 @@ __all__ = [
     "Fibre",
     "HierarchicalController",
     "InputError",
+    "JointedRobot",
     "KinematicPlant",
     "Leg",
     "LocalController",

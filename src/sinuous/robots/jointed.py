@@ -1,7 +1,7 @@
 """Cable-driven robots of rigid modules on universal joints (paper A, section 2).
 
-The base plate is at the origin and the straight robot along y.  Joint i, its centre A_i a plate
-offset D behind the plate before it, turns what follows by R_i = Rot(e1, q1) Rot(e2, q2) about
+The base plate is at the origin and the straight robot along y.  Joint i, whose centre A_i is a
+plate offset D beyond the plate before it, turns what follows by R_i = Rot(e1, q1) Rot(e2, q2) about
 two axes of Z and X; then come the tube of module i, of length H between its two endplates, and
 the next joint.  So A_1 = D y and A_(i+1) = A_i + L d_i with L = H + 2 D and d_i the direction y
 after the turns of the joints 1 to i.
