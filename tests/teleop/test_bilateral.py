@@ -133,9 +133,9 @@ def test_a12_the_offset_at_rest_is_what_the_force_and_the_delays_say() -> None:
 
 def test_a12_the_offset_vanishes_with_the_force() -> None:
     def goal(t: float) -> Array:
-        return to_and_hold(np.array([0.095, -0.09]))(t) if t < 4.0 else np.zeros(2)
+        return to_and_hold(np.array([0.095, -0.09]))(t) if t < 3.0 else np.zeros(2)
 
-    r = run(rig(ImpedanceOperator(goal)), 9.0)
+    r = run(rig(ImpedanceOperator(goal)), 11.0)
     np.testing.assert_allclose(r.F_s[-1], 0.0, atol=SETTLED_FORCE)
     np.testing.assert_allclose(r.X_sd[-1], r.X[-1], atol=SETTLED_PLACE)
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from sinuous.teleop.bilateral import BilateralState
 from sinuous.teleop.drift import DriftCorrection
+from sinuous.teleop.link import Packet
 from sinuous.teleop.operators import ImpedanceOperator
 from sinuous.teleop.waves import ModifiedWaves, StandardWaves
 
@@ -68,10 +69,11 @@ def test_what_loss_took_away_comes_back() -> None:
 
 def test_without_a_tank_what_a_tick_dissipates_is_not_enough() -> None:
     """At rest nothing is dissipated, and the follower's lag makes every way cost something."""
-    untanked = DriftCorrection(rate=QUICK.rate, speed=QUICK.speed, capacity=0.0)
-    r = run(rig(ImpedanceOperator(HOLD), correction=untanked), 6.0, disturb=clamp)
-    assert THERE < offset(r) < 0.6 * np.linalg.norm(CLAMPED)
+    untanked, hand = DriftCorrection(capacity=0.0), ImpedanceOperator(HOLD)
+    r = run(rig(hand, correction=untanked), 9.0, disturb=clamp)
+    assert offset(r) > 3.0 * THERE
     assert r.ledger.least.channel >= -ROUNDING
+    assert offset(run(rig(hand, correction=DriftCorrection()), 9.0, disturb=clamp)) < THERE
 
 
 def test_pressing_on_a_wall_the_correction_spends_what_it_has_and_no_more() -> None:
@@ -111,6 +113,16 @@ def test_what_costs_nothing_is_not_shortened() -> None:
         tank, v_c = correction.step(0.0, 0.0, force, away, DT)
         np.testing.assert_allclose(v_c, [0.2, 0.0])
         assert tank == 0.0
+
+
+def test_a_position_that_is_not_finite_makes_the_follower_hold_still() -> None:
+    end = rig(ImpedanceOperator(HOLD), correction=DriftCorrection()).follower
+    state, home = end.init([0.0, 0.6, 0.0]), [0.0, 0.6, 0.0]
+    bad = Packet(wave=np.ones(2), position=np.array([np.nan, 0.0]))
+    after, signals, _ = end.step(state, home, bad)
+    assert signals.fault == "holding still: what was received is not finite"
+    np.testing.assert_array_equal(after.X_sd, state.X_sd)
+    assert after.tank == state.tank
 
 
 def test_standard_waves_dissipate_nothing_and_so_give_nothing() -> None:

@@ -1,10 +1,10 @@
 """Bringing the follower's desired point back to the leader's, without making energy."""
 
 from dataclasses import dataclass
-
-import numpy as np
+from math import sqrt
 
 from sinuous.arrays import Array
+from sinuous.teleop import kernels
 from sinuous.teleop.checks import positive, zero_or_more
 
 
@@ -57,11 +57,11 @@ class DriftCorrection:
             dt: time of the tick [s]
         """
         wanted = self.rate * offset
-        fastest = float(np.sqrt(wanted @ wanted))
+        fastest = sqrt(kernels.work(wanted, wanted))
         if fastest > self.speed:
             wanted *= self.speed / fastest
         tank += lost * dt
-        price = float(force @ wanted) * dt
+        price = kernels.work(force, wanted) * dt
         if price > tank:
             wanted *= tank / price
             price = tank

@@ -219,18 +219,20 @@ class FollowerEnd:
             V_sd = V_sd + v_c
         kernels.advance(X_sd, V_sd, dt, X_next)
         if not kernels.finite(X_s, sent, X_next):
-            return self._rest(state, X_s, wave)
+            return self._rest(state, X_s, received)
         target = self.mapping.place(X_next)
         signals = FollowerSignals(X_sd, V_sd, X_s, F_s, target, wave, "")
         return FollowerState(X_next, V_sd, X_s, port, tank), signals, Packet(sent, X_sd)
 
     def _rest(
-        self, state: FollowerState, X_s: Array, wave: Array
+        self, state: FollowerState, X_s: Array, received: Packet | None
     ) -> tuple[FollowerState, FollowerSignals, Packet]:
         zero, X_sd = self._zero, state.X_sd
+        packet = Packet(zero, zero) if received is None else received
+        wave = packet.wave
         if not np.all(np.isfinite(X_s)):
             what = "the measured tip is"
-        elif not np.all(np.isfinite(wave)):
+        elif not np.all(np.isfinite(packet)):
             what = "what was received is"
         else:
             what = "the virtual force is"

@@ -48,6 +48,16 @@ def modified_follower(
 
 
 @inner
+def modified_loss(gain: float, b: float, F: Array, received: Array) -> float:
+    """|F_s - g_r|^2 / 2b."""
+    total = 0.0
+    for i in range(F.size):
+        apart = F[i] - gain * received[i]
+        total += apart * apart
+    return 0.5 * total / b
+
+
+@inner
 def standard_leader(b: float, v: Array, received: Array, force: Array, sent: Array) -> None:
     """Force and wave to send."""
     root = np.sqrt(2.0 * b)

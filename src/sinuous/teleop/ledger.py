@@ -36,7 +36,8 @@ class Ledger:
 
     def __init__(self, dt: float) -> None:
         self._dt = dt
-        self._times, self._history = list[float](), list[Energies]()
+        # Plain numbers, which the collector of garbage passes over.
+        self._times, self._history = list[float](), list[float]()
         self.energies = Energies(0.0, 0.0, 0.0)
 
     def observe(self, signals: Signals) -> Energies:
@@ -51,7 +52,7 @@ class Ledger:
         )
         self.energies = now
         self._times.append(time + self._dt)
-        self._history.append(now)
+        self._history.extend(now)
         return now
 
     @property

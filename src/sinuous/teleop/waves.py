@@ -247,5 +247,4 @@ class ModifiedWaves:
 
     def follower_loss(self, force: Array, received: Array) -> float:
         """|F_s - g_r|^2 / 2b [W], a term of the channel's power (notes A11)."""
-        apart = force - self.gain * received
-        return float(apart @ apart) / (2.0 * self.impedance)
+        return kernels.modified_loss(self.gain, self.impedance, force, received)

@@ -87,5 +87,5 @@ def worst_sinusoid(
     values, vectors = dissipation(H)
     at = int(np.argmin(values[:, 0]))
     v, F_s = vectors[at, :, 0]
-    power = 0.25 * float(values[at, 0]) / abs(v) ** 2
+    power = 0.25 * float(values[at, 0] / abs(v) ** 2)
     return Sinusoid(omega=float(omega[at]), v=1.0, F_s=complex(F_s / v), power=power)
