@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 from tyro.conf import Positional, UseAppendAction, arg
 
 Folder = Annotated[str, arg(metavar="DIR")]
-Paper = Literal["hachen2025"]
-What = Literal["mpc", "scaling", "tails", "rate", "qp", "startup"]
+Paper = Literal["qin2020", "hachen2025"]
+What = Literal["mpc", "scaling", "tails", "rate", "qp", "ik", "startup"]
 Assignments = Annotated[UseAppendAction[tuple[tuple[str, ...], ...]], arg(metavar="KEY=VALUE ...")]
 
 
@@ -71,7 +71,7 @@ class Reproduce:
     hachen2025: shape-constrained control of an extensible tendon-driven robot.
     """
 
-    paper: Positional[Annotated[Paper, arg(metavar="{hachen2025}")]]
+    paper: Positional[Annotated[Paper, arg(metavar="{qin2020,hachen2025}")]]
     """which paper"""
     out: Folder
     """folder for the results; files of an earlier run are overwritten"""
@@ -99,10 +99,13 @@ class Bench:
 
     qp: the solver of the controller's quadratic programs beside DAQP and PIQP.
 
+    ik: the geometric inverse kinematics of the jointed robot beside damped least squares, Newton's
+    method, cyclic coordinate descent and FABRIK.
+
     startup: help, imports and the first control step of a new process.
     """
 
-    what: Positional[Annotated[What, arg(metavar="{mpc,scaling,tails,rate,qp,startup}")]]
+    what: Positional[Annotated[What, arg(metavar="{mpc,scaling,tails,rate,qp,ik,startup}")]]
     """what to measure"""
     json: Annotated[str | None, arg(metavar="FILE")] = None
     """file for all numbers, settings, versions and solver logs"""

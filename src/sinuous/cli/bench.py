@@ -69,6 +69,10 @@ def _benchmark(what: What) -> "Benchmark":
             from sinuous.bench.qp import QP
 
             return QP
+        case "ik":
+            from sinuous.bench.ik import IK
+
+            return IK
         case "startup":
             from sinuous.bench.startup import STARTUP
 

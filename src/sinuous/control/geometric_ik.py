@@ -34,7 +34,8 @@ class IKStatus(IntEnum):
     REACHED = kernels.REACHED
     """The tip is on the target and no joint is bent too far."""
     UNREACHABLE = kernels.UNREACHABLE
-    """The target is farther away than the robot is long; the tip is on the nearest reachable."""
+    """The target is farther away than the robot is long; the tip is on the nearest reachable.
+    Whether that one is within the joint limits, its bend says."""
     JOINT_LIMIT = kernels.JOINT_LIMIT
     """The tip would be on the target, but a joint would be bent beyond its limit."""
 

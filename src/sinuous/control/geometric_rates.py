@@ -90,15 +90,16 @@ class RateLimiter:
     def _limits(self) -> Array:
         return np.array(self.robot.rate_limits, dtype=np.float64, order="C")
 
-    def step(self, c: Array, goal: Array) -> tuple[Array, float]:
+    def step(self, c: ArrayLike, goal: ArrayLike) -> tuple[Array, float]:
         """From configuration c (n,) towards the goal (n,).
 
         Returns:
             the configuration one step later (n,), and the share of the way, 0 to 1, that it is:
             below 1 an actuator saturates
         """
-        ahead = np.empty(len(c))
-        return ahead, _go(self.robot.routing, self._limits, c, goal, self.dt, ahead)
+        start, end = (np.array(value, dtype=np.float64, order="C") for value in (c, goal))
+        ahead = np.empty(len(start))
+        return ahead, _go(self.robot.routing, self._limits, start, end, self.dt, ahead)
 
 
 def _check(dt: float) -> None:

@@ -5,9 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from sinuous.arrays import Array, ArrayLike
-from sinuous.geometry import bvh
 from sinuous.geometry.safe_zone import SafeZone
-from sinuous.teleop import kernels
+from sinuous.teleop import kernels, walls
 from sinuous.teleop.checks import vector, zero_or_more
 from sinuous.teleop.force import Motion
 from sinuous.teleop.mapping import Mapping
@@ -71,8 +70,8 @@ class ZoneForce:
 
     A controller that keeps the zone never lets the follower pass the margin, so a force on its
     own depth would never be felt: this one acts on the depth of X_sd below the margin. Direction
-    and depth are those of the zone's clearance; what of the force is off the wave side's axes the
-    operator does not feel.
+    and depth are those of the way to the nearest place that keeps the margin, see `walls`; what of
+    the force is off the wave side's axes the operator does not feel.
 
     Arguments:
         zone: the room the follower may use
@@ -99,12 +98,8 @@ class ZoneForce:
 
     def force(self, motion: Motion) -> Array:
         """F_b (A,) [N]."""
-        clearance, gradient = np.empty(1), np.empty((1, 3))
-        triangle = np.empty(1, dtype=np.int64)
-        point = self.mapping.place(motion.X_sd).reshape(1, 3)
-        bvh.nearest(self.zone.arrays, point, clearance, gradient, triangle)
-        out, depth = np.zeros(self.mapping.scale.size), self.distance - clearance[0]
-        if depth >= 0.0:
-            axes, V = self.mapping.axes, motion.V_sd
-            kernels.wall(axes, gradient, depth, self.stiffness, self.damping, V, out)
+        way, out = np.empty(3), np.zeros(self.mapping.scale.size)
+        walls.way_back(self.zone.arrays, self.mapping.place(motion.X_sd), self.distance, way)
+        axes, V = self.mapping.axes, motion.V_sd
+        kernels.wall(axes, way, self.stiffness, self.damping, V, out)
         return out

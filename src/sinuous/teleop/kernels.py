@@ -193,16 +193,14 @@ def printed_box(
 
 
 @inner
-def wall(
-    axes: Array, gradient: Array, depth: float, stiffness: float, damping: float, v: Array,
-    out: Array,
-) -> None:  # fmt: skip
-    """(25), resistive, of a wall with free side along gradient (1, 3), felt along axes (3, A)."""
-    outward = 0.0
+def wall(axes: Array, way: Array, stiffness: float, damping: float, v: Array, out: Array) -> None:
+    """(25), resistive, of walls that the way (3,) [m] leads out of, felt along axes (3, A)."""
+    depth, outward = np.sqrt(way[0] ** 2 + way[1] ** 2 + way[2] ** 2), 0.0
     for a in range(out.size):
         out[a] = 0.0
-        for i in range(3):
-            out[a] -= axes[i, a] * gradient[0, i]
+        if depth > 0.0:
+            for i in range(3):
+                out[a] -= axes[i, a] * way[i] / depth
         outward += out[a] * v[a]
     push = max(stiffness * depth + damping * outward, 0.0)
     for a in range(out.size):
