@@ -4,13 +4,17 @@ import numpy as np
 
 import sinuous as sn
 
+np.set_printoptions(precision=3, suppress=True)
+
 robot = sn.load_robot("qin2020")
 ik = sn.GeometricIK(robot)
 
 # Joint angles, and back from the lengths of the cables; an encoder that is wrong stands out.
 c = np.random.default_rng(0).uniform(-0.2, 0.2, len(robot.home))
 lengths = robot.lengths(c)
-print(f"from lengths to angles and back: {np.max(np.abs(robot.configuration(lengths) - c)):.0e} rad")
+print(
+    f"from lengths to angles and back: {np.max(np.abs(robot.configuration(lengths) - c)):.0e} rad"
+)
 lengths[4] += 0.001
 print(f"one cable 1 mm wrong, residual of each module: {robot.consistency(lengths) * 1e3} mm")
 

@@ -8,13 +8,18 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from sinuous.control.cable_loop import CableLoop
     from sinuous.control.dls import DampedLeastSquares
+    from sinuous.control.geometric_ik import GeometricIK, IKStatus
+    from sinuous.control.geometric_rates import RateLimiter
     from sinuous.control.hierarchical import HierarchicalController
     from sinuous.control.local import LocalController
     from sinuous.control.mpc import Costs, MPCState, ShapeConstrainedMPC
     from sinuous.control.offset_free import OffsetFree, When
+    from sinuous.control.pid import Pid
     from sinuous.control.projected import ProjectedTarget
     from sinuous.control.report import Command, Report, Status
+    from sinuous.control.transmission import Transmission
     from sinuous.errors import InputError
     from sinuous.geometry import shapes
     from sinuous.geometry.mesh import check_mesh
@@ -35,28 +40,60 @@ if TYPE_CHECKING:
     from sinuous.scenario.path import Leg, follow, timed_path, waypoints
     from sinuous.session import Result, run, steps
     from sinuous.summary import summarise
+    from sinuous.teleop.bilateral import Bilateral
+    from sinuous.teleop.boundary import BoxForce, ZoneForce
+    from sinuous.teleop.drift import DriftCorrection
+    from sinuous.teleop.ends import FollowerEnd, LeaderEnd
+    from sinuous.teleop.force import ErrorForce, ErrorForceAlong, Together
+    from sinuous.teleop.leader import LeaderDevice
+    from sinuous.teleop.ledger import Ledger
+    from sinuous.teleop.link import ConstantDelay
+    from sinuous.teleop.mapping import Mapping
+    from sinuous.teleop.move_and_wait import MoveAndWait
+    from sinuous.teleop.operators import ImpedanceOperator, Prescribed
+    from sinuous.teleop.waves import ModifiedWaves, StandardWaves
     from sinuous.view import save_comparison, save_figures
 
 _HOME = {
     "Accuracy": "sinuous.plants.sensors",
+    "Bilateral": "sinuous.teleop.bilateral",
+    "BoxForce": "sinuous.teleop.boundary",
+    "CableLoop": "sinuous.control.cable_loop",
     "Command": "sinuous.control.report",
+    "ConstantDelay": "sinuous.teleop.link",
     "Costs": "sinuous.control.mpc",
     "DampedLeastSquares": "sinuous.control.dls",
     "Disturbance": "sinuous.plants.kinematic",
+    "DriftCorrection": "sinuous.teleop.drift",
+    "ErrorForce": "sinuous.teleop.force",
+    "ErrorForceAlong": "sinuous.teleop.force",
     "Fibre": "sinuous.plants.fibre",
+    "FollowerEnd": "sinuous.teleop.ends",
+    "GeometricIK": "sinuous.control.geometric_ik",
     "HierarchicalController": "sinuous.control.hierarchical",
+    "IKStatus": "sinuous.control.geometric_ik",
+    "ImpedanceOperator": "sinuous.teleop.operators",
     "InputError": "sinuous.errors",
     "JointedRobot": "sinuous.robots.jointed",
     "KinematicPlant": "sinuous.plants.kinematic",
+    "LeaderDevice": "sinuous.teleop.leader",
+    "LeaderEnd": "sinuous.teleop.ends",
+    "Ledger": "sinuous.teleop.ledger",
     "Leg": "sinuous.scenario.path",
     "LocalController": "sinuous.control.local",
     "MPCState": "sinuous.control.mpc",
+    "Mapping": "sinuous.teleop.mapping",
     "Measurement": "sinuous.measurement",
     "Mismatch": "sinuous.plants.mismatched",
     "MismatchedPlant": "sinuous.plants.mismatched",
+    "ModifiedWaves": "sinuous.teleop.waves",
+    "MoveAndWait": "sinuous.teleop.move_and_wait",
     "OffsetFree": "sinuous.control.offset_free",
     "PccRobot": "sinuous.robots.pcc",
+    "Pid": "sinuous.control.pid",
+    "Prescribed": "sinuous.teleop.operators",
     "ProjectedTarget": "sinuous.control.projected",
+    "RateLimiter": "sinuous.control.geometric_rates",
     "Reach": "sinuous.reach",
     "RecordedPlant": "sinuous.plants.recorded",
     "Recording": "sinuous.recording.run",
@@ -68,10 +105,14 @@ _HOME = {
     "ShapeConstrainedMPC": "sinuous.control.mpc",
     "ShapeSensing": "sinuous.plants.fibre",
     "ShapeTracker": "sinuous.plants.sensors",
+    "StandardWaves": "sinuous.teleop.waves",
     "Status": "sinuous.control.report",
     "Timing": "sinuous.plants.sensors",
     "TipTracker": "sinuous.plants.sensors",
+    "Together": "sinuous.teleop.force",
+    "Transmission": "sinuous.control.transmission",
     "When": "sinuous.control.offset_free",
+    "ZoneForce": "sinuous.teleop.boundary",
     "check_mesh": "sinuous.geometry.mesh",
     "follow": "sinuous.scenario.path",
     "load_robot": "sinuous.robots.robot_file",
@@ -94,24 +135,44 @@ _OTHER_NAME = {"read_recording": "read"}
 
 __all__ = [
     "Accuracy",
+    "Bilateral",
+    "BoxForce",
+    "CableLoop",
     "Command",
+    "ConstantDelay",
     "Costs",
     "DampedLeastSquares",
     "Disturbance",
+    "DriftCorrection",
+    "ErrorForce",
+    "ErrorForceAlong",
     "Fibre",
+    "FollowerEnd",
+    "GeometricIK",
     "HierarchicalController",
+    "IKStatus",
+    "ImpedanceOperator",
     "InputError",
     "JointedRobot",
     "KinematicPlant",
+    "LeaderDevice",
+    "LeaderEnd",
+    "Ledger",
     "Leg",
     "LocalController",
     "MPCState",
+    "Mapping",
     "Measurement",
     "Mismatch",
     "MismatchedPlant",
+    "ModifiedWaves",
+    "MoveAndWait",
     "OffsetFree",
     "PccRobot",
+    "Pid",
+    "Prescribed",
     "ProjectedTarget",
+    "RateLimiter",
     "Reach",
     "RecordedPlant",
     "Recording",
@@ -123,10 +184,14 @@ __all__ = [
     "ShapeConstrainedMPC",
     "ShapeSensing",
     "ShapeTracker",
+    "StandardWaves",
     "Status",
     "Timing",
     "TipTracker",
+    "Together",
+    "Transmission",
     "When",
+    "ZoneForce",
     "check_mesh",
     "follow",
     "load_robot",

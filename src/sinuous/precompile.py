@@ -2,12 +2,22 @@
 
 import numpy as np
 
+from sinuous.control.cable_loop import CableLoop
+from sinuous.control.geometric_ik import GeometricIK
 from sinuous.control.mpc import ShapeConstrainedMPC
 from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.plants.fibre import ShapeSensing
 from sinuous.plants.kinematic import KinematicPlant
-from sinuous.robots.robot_file import load_robot
+from sinuous.robots.robot_file import load_jointed, load_robot
+from sinuous.teleop.bilateral import Bilateral
+from sinuous.teleop.boundary import BoxForce, ZoneForce
+from sinuous.teleop.drift import DriftCorrection
+from sinuous.teleop.force import ErrorForce, ErrorForceAlong, Together
+from sinuous.teleop.mapping import Mapping
+from sinuous.teleop.move_and_wait import MoveAndWait
+from sinuous.teleop.operators import ImpedanceOperator, Prescribed
+from sinuous.teleop.waves import ModifiedWaves, StandardWaves
 
 LENGTH, RADIUS = 0.4, 0.02  # of a tube that keeps a robot in reach of its wall [m]
 DT = 1.0 / 30.0  # [s]
@@ -23,6 +33,44 @@ def precompile() -> None:
         _, command = mpc.step(state, target=into_the_wall)
         plant = ShapeSensing(robot=robot).on(KinematicPlant(robot, seed=0), 0)
         plant.step(command.rates, DT)
+    _by_hand()
+
+
+def _by_hand() -> None:
+    """A tick of every scheme, hand and force, and one of the robot of rigid modules."""
+    robot, zone = load_jointed("qin2020"), _tube()
+    ik = GeometricIK(robot)
+    loop, plant = CableLoop(ik, zone), KinematicPlant(robot, seed=0, encoder_step=1e-6)
+    tip, state, still = robot.tip(robot.home), loop.init(robot.home), (np.zeros(2), np.zeros(3))
+    plane, space = Mapping.plane(1.0, float(tip[1])), Mapping.space(1.0, tip)
+    box = BoxForce(low=[-1.0, -1.0], high=[1.0, 1.0])
+    walls = ZoneForce(zone=zone, mapping=space, distance=2.0 * RADIUS)
+    for scheme in (StandardWaves(), ModifiedWaves.c2()):
+        for mapping, rest, force in (
+            (plane, still[0], Together((ErrorForce(), box))),
+            (space, still[1], Together((ErrorForceAlong(), walls))),
+        ):
+            for operator in (
+                Prescribed(lambda _, rest=rest: rest),
+                ImpedanceOperator(lambda _, rest=rest: rest),
+                MoveAndWait(stops=rest[None]),
+            ):
+                hand = Bilateral.connect(
+                    operator=operator,
+                    mapping=mapping,
+                    force=force,
+                    scheme=scheme,
+                    correction=DriftCorrection(),
+                )
+                far, signals = hand.step(hand.init(tip), tip)
+                hand.step(far, tip)
+                state, command = loop.step(state, signals.follower.target_w)
+                plant.step(command.rates, loop.dt)
+    ik.solve(tip[None])
+    robot.points_jacobian(robot.home)
+    robot.lengths_jacobian(robot.home)
+    mpc = ShapeConstrainedMPC(robot, SafeZone.unbounded(), horizon=2)
+    mpc.step(mpc.init(robot.home), tip)
 
 
 def _tube() -> SafeZone:

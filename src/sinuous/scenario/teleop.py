@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -21,10 +22,8 @@ from sinuous.scenario.teleop_tables import (
 from sinuous.teleop.bilateral import Bilateral
 from sinuous.teleop.boundary import BoxForce, ZoneForce
 from sinuous.teleop.drift import DriftCorrection
-from sinuous.teleop.ends import FollowerEnd, LeaderEnd
 from sinuous.teleop.force import ErrorForce, ErrorForceAlong, Together, VirtualForce
 from sinuous.teleop.leader import LeaderDevice
-from sinuous.teleop.link import ConstantDelay
 from sinuous.teleop.mapping import Mapping
 from sinuous.teleop.move_and_wait import MoveAndWait
 from sinuous.teleop.operators import Goal, ImpedanceOperator, Operator, Prescribed
@@ -82,29 +81,17 @@ class Teleoperation:
             goal: where the hand wants to be (A,) [m], in the leader's coordinates, by time [s]
             stops: the same one by one, for an operator who moves and waits
         """
-        table, mapping, scheme = self.table, self.mapping, _scheme(self.table)
-        device = LeaderDevice(
-            mass=table.operator.mass, limit=table.operator.workspace or float("inf")
-        )
-        correction = table.correction and DriftCorrection(
-            rate=table.correction.rate, speed=table.correction.speed
-        )
-        link = ConstantDelay(delay=table.delay, dt=self.dt)
-        return Bilateral(
-            leader=LeaderEnd(
-                scheme=scheme,
-                mapping=mapping,
-                operator=_operator(table.operator, goal, stops),
-                device=device,
-            ),
-            follower=FollowerEnd(
-                scheme=scheme,
-                mapping=mapping,
-                force=_force(table.force, mapping, self.mpc),
-                correction=correction,
-            ),
-            forward=link,
-            backward=link,
+        table, mapping = self.table, self.mapping
+        limit = table.operator.workspace
+        return Bilateral.connect(
+            operator=_operator(table.operator, goal, stops),
+            mapping=mapping,
+            force=_force(table.force, mapping, self.mpc),
+            scheme=_scheme(table),
+            delay=table.delay,
+            device=LeaderDevice(mass=table.operator.mass, limit=inf if limit is None else limit),
+            correction=table.correction
+            and DriftCorrection(rate=table.correction.rate, speed=table.correction.speed),
         )
 
 

@@ -85,9 +85,8 @@ class ByHand:
 
     def _work(self) -> Array:
         """Energy (k, 3) [J] taken in during each tick, see `teleop.ledger`."""
-        dt = self.tick
-        rows = [(a.F_m @ a.V * dt, a.F_h @ a.V * dt, b.F_s @ b.V_sd * dt) for _, a, b in self._ticks]
-        into_leader, from_hand, into_follower = np.array(rows).T
+        powers = [(a.F_m @ a.V, a.F_h @ a.V, b.F_s @ b.V_sd) for _, a, b in self._ticks]
+        into_leader, from_hand, into_follower = self.tick * np.array(powers).T
         return np.column_stack([into_leader - into_follower, -from_hand, into_follower])
 
     def _goal(self, time: float) -> Array:

@@ -1,9 +1,10 @@
 """Both ends and the connection between them, on one clock."""
 
 from dataclasses import dataclass
-from typing import Generic, NamedTuple
+from typing import Generic, NamedTuple, Self
 
 from sinuous.arrays import ArrayLike
+from sinuous.teleop.drift import DriftCorrection
 from sinuous.teleop.ends import (
     FollowerEnd,
     FollowerSignals,
@@ -12,8 +13,12 @@ from sinuous.teleop.ends import (
     LeaderSignals,
     LeaderState,
 )
-from sinuous.teleop.link import Link, LinkModel, Packet
-from sinuous.teleop.operators import O
+from sinuous.teleop.force import VirtualForce
+from sinuous.teleop.leader import LeaderDevice
+from sinuous.teleop.link import ConstantDelay, Link, LinkModel, Packet
+from sinuous.teleop.mapping import Mapping
+from sinuous.teleop.operators import O, Operator
+from sinuous.teleop.waves import ModifiedWaves, Scheme
 
 
 class Signals(NamedTuple):
@@ -77,6 +82,45 @@ class Bilateral(Generic[O]):
         for name, link in (("forward", self.forward), ("backward", self.backward)):
             if link.dt != self.dt:
                 raise ValueError(f"{name} must have ticks of {self.dt} s, not {link.dt}")
+
+    @classmethod
+    def connect(
+        cls,
+        *,
+        operator: Operator[O],
+        mapping: Mapping,
+        force: VirtualForce,
+        scheme: Scheme | None = None,
+        delay: float = 0.0,
+        device: LeaderDevice | None = None,
+        correction: DriftCorrection | None = None,
+    ) -> Self:
+        """Both ends with the same scheme and mapping, and the same constant delay both ways.
+
+        Arguments:
+            operator: whoever holds the device
+            mapping: from the device's workspace to the world
+            force: what the operator shall feel
+            scheme: of the waves, by default the paper's own (C2)
+            delay: one way [s]
+            device: what is held
+            correction: of the desired point's drift; None as printed
+
+        Raises:
+            ValueError: if the delay is negative or not finite
+        """
+        scheme = ModifiedWaves.c2() if scheme is None else scheme
+        link = ConstantDelay(delay=delay, dt=scheme.dt)
+        return cls(
+            leader=LeaderEnd(
+                scheme=scheme, mapping=mapping, operator=operator, device=device or LeaderDevice()
+            ),
+            follower=FollowerEnd(
+                scheme=scheme, mapping=mapping, force=force, correction=correction
+            ),
+            forward=link,
+            backward=link,
+        )
 
     @property
     def dt(self) -> float:
