@@ -175,8 +175,8 @@ def test_the_margin_holds_although_the_hand_goes_through_the_wall(name: str) -> 
     hand = mapping.origin + run.signal("sent_m") @ mapping.axes.T
     keeps = found.robot.required_distance(found.mpc.margin)[-1]
     assert np.min(found.zone.clearance(hand[::50])) < keeps - 0.005
-    # The wall is felt: while the hand is still, the force is not zero.
-    still = np.linalg.norm(run.signal("sent_m_s"), axis=1) < 1e-3
+    # The wall is felt: while the hand hardly moves, the force is not zero.
+    still = np.linalg.norm(run.signal("sent_m_s"), axis=1) < 0.01
     assert np.max(np.linalg.norm(run.signal("felt_n")[still], axis=1)) > 0.1
     assert np.min(run.signal("channel_j")) >= -ROUNDING
 

@@ -32,13 +32,14 @@ class CableLoopState:
 
     Arguments:
         robot: whose cables they are
-        desired: configuration (n,) whose cable lengths the PIDs go for
+        desired, lengths_desired: configuration (n,) and its lengths (P,) [m], what the PIDs go for
         lengths: by the encoders, or by the model where nothing is measured (P,) [m]
         pid: of the cables
     """
 
     robot: JointedRobot
     desired: Array
+    lengths_desired: Array
     lengths: Array
     pid: PidState
 
@@ -111,7 +112,7 @@ class CableLoop:
         if start.shape != self.robot.home.shape:
             raise ValueError(f"c must have {len(self.robot.home)} coordinates, not {start.shape}")
         lengths = self.robot.lengths(start)
-        return CableLoopState(self.robot, start, lengths, self.pid.at_rest(len(lengths)))
+        return CableLoopState(self.robot, start, lengths, lengths, self.pid.at_rest(len(lengths)))
 
     def step(
         self, state: CableLoopState, target: ArrayLike, measured: Measurement | None = None
@@ -125,18 +126,20 @@ class CableLoop:
         lengths = state.lengths if measured is None else measured.lengths
         if not (goal.shape == (3,) and isfinite(goal[0] + goal[1] + goal[2])):
             return self._hold(state, "the target is not three finite numbers", began)
-        if not isfinite(float(np.sum(lengths))):
+        if not isfinite(float(lengths @ lengths)):
             return self._hold(state, "the measurement is not finite", began)
         found = self.ik.solve_one(goal)
         wanted = found.c
         if found.status is IKStatus.JOINT_LIMIT:
             wanted = unbent(self.robot, wanted, state.desired)
-        desired, share = self._limiter.step(state.desired, wanted)
-        error = self.robot.lengths(desired) - lengths
+        desired, lengths_desired, share = self._limiter.follow(
+            state.desired, state.lengths_desired, wanted
+        )
+        error = lengths_desired - lengths
         pid, rates, clipped = self.pid.step(state.pid, error, *self._limits, self.dt)
         if measured is None:
             lengths = lengths + self.dt * rates
-        after = CableLoopState(self.robot, desired, lengths, pid)
+        after = CableLoopState(self.robot, desired, lengths_desired, lengths, pid)
         if measured is not None and measured.has_shape:
             points = measured.points
         else:

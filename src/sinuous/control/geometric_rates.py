@@ -98,8 +98,18 @@ class RateLimiter:
             below 1 an actuator saturates
         """
         start, end = (np.array(value, dtype=np.float64, order="C") for value in (c, goal))
-        ahead = np.empty(len(start))
-        return ahead, _go(self.robot.routing, self._limits, start, end, self.dt, ahead)
+        ahead, _, share = self.follow(start, self.robot.lengths(start), end)
+        return ahead, share
+
+    def follow(self, c: Array, lengths: Array, goal: Array) -> tuple[Array, Array, float]:
+        """The same with the lengths (P,) [m] of c known, for loops at 1 kHz.
+
+        Returns:
+            the configuration one step later (n,), its lengths (P,) [m], and the share of the way
+        """
+        ahead, after = np.empty(len(c)), np.empty(len(lengths))
+        share = _go(self.robot.routing, self._limits, c, lengths, goal, self.dt, ahead, after)
+        return ahead, after, share
 
 
 def _check(dt: float) -> None:
@@ -108,19 +118,26 @@ def _check(dt: float) -> None:
 
 
 @kernel
-def _go(routing: Routing, limits: Array, c: Array, goal: Array, dt: float, ahead: Array) -> float:
-    """Write how far it gets (n,), by false position on the share of the way; return the share."""
-    now = np.empty(routing.b.size)
-    for k in range(now.size):
-        now[k] = length_of(routing, k, c)
+def _go(
+    routing: Routing,
+    limits: Array,
+    c: Array,
+    now: Array,
+    goal: Array,
+    dt: float,
+    ahead: Array,
+    after: Array,
+) -> float:
+    """Write how far it gets (n,) and the lengths there (P,), by false position on the share of the
+    way; return the share."""
     ahead[:] = goal
-    low, low_load, high, high_load = 0.0, 0.0, 1.0, _load(routing, limits, now, ahead, dt)
+    low, low_load, high, high_load = 0.0, 0.0, 1.0, _load(routing, limits, now, ahead, dt, after)
     if not high_load > 1.0:
         return 1.0
     for _ in range(ROUNDS):
         share = low + (high - low) * (0.5 + 0.5 * FULL - low_load) / (high_load - low_load)
         _between(c, goal, share, ahead)
-        load = _load(routing, limits, now, ahead, dt)
+        load = _load(routing, limits, now, ahead, dt, after)
         if load > 1.0:
             high, high_load = share, load
         else:
@@ -128,6 +145,7 @@ def _go(routing: Routing, limits: Array, c: Array, goal: Array, dt: float, ahead
         if low_load >= FULL:
             break
     _between(c, goal, low, ahead)
+    _load(routing, limits, now, ahead, dt, after)
     return low
 
 
@@ -138,11 +156,12 @@ def _between(c: Array, goal: Array, share: float, ahead: Array) -> None:
 
 
 @inner
-def _load(routing: Routing, limits: Array, now: Array, c: Array, dt: float) -> float:
-    """Rate of the actuator that is worst off, by its limit."""
+def _load(routing: Routing, limits: Array, now: Array, c: Array, dt: float, after: Array) -> float:
+    """Rate of the actuator that is worst off, by its limit; writes the lengths at c (P,)."""
     load = 0.0
     for k in range(now.size):
-        change = length_of(routing, k, c) - now[k]
+        after[k] = length_of(routing, k, c)
+        change = after[k] - now[k]
         if change != 0.0:
             load = max(load, change / (dt * (limits[k, 1] if change > 0.0 else limits[k, 0])))
     return load

@@ -94,8 +94,8 @@ class KinematicPlant:
             self._disturb(self._disturbance, dt)
         self._truth = None
         if self._encoder_step > 0.0:
-            read = self._encoder_step * np.round(self._lengths / self._encoder_step)
-            points, _ = self.robot.shape(self.robot.configuration(read))
+            read = self._encoder_step * np.rint(self._lengths / self._encoder_step)
+            points = self.robot.points(self.robot.configuration(read))
             return Measurement(points=points, tip=points[-1], lengths=read)
         points = self._points(self.robot.points(self._configuration))
         return Measurement(points=points, tip=points[-1], lengths=self._lengths)

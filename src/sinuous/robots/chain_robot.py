@@ -157,8 +157,10 @@ class ChainRobot(ABC):
 
     def _flat(self, c: ArrayLike) -> tuple[Array, tuple[int, ...]]:
         """Rows of the last axis (B, n), and the shape of the axes before."""
-        value = np.asarray(c, dtype=float)
-        return np.ascontiguousarray(value.reshape(-1, value.shape[-1])), value.shape[:-1]
+        value = np.ascontiguousarray(c, dtype=float)
+        if value.ndim == 1:  # by far the most frequent, and at the highest rate
+            return value[None], ()
+        return value.reshape(-1, value.shape[-1]), value.shape[:-1]
 
     # --- bend limits ---------------------------------------------------------------------
 

@@ -9,11 +9,21 @@ from sinuous.scenario.path import Leg
 from sinuous.scenario.teleop import Teleoperation
 from sinuous.teleop.bilateral import Signals
 
-LEADER = {"leader_m": "x", "hand_n": "F_h", "felt_n": "F_m", "sent_m": "X", "sent_m_s": "V"}
-"""Signals of the leader's end, and what they are called there."""
+VECTORS = (
+    "leader_m",
+    "hand_n",
+    "felt_n",
+    "sent_m",
+    "sent_m_s",
+    "desired_m",
+    "desired_m_s",
+    "tip_m",
+    "virtual_n",
+)
+"""Signals with a value for each axis: x, F_h, F_m, X and V of the leader's end, X_sd, V_sd, X_s and
+F_s of the follower's; all but the first two on the wave side."""
 
-FOLLOWER = {"desired_m": "X_sd", "desired_m_s": "V_sd", "tip_m": "X_s", "virtual_n": "F_s"}
-"""Signals of the follower's end, and what they are called there; all on the wave side."""
+HAND, FELT, SPEED, DESIRED_SPEED, VIRTUAL = 1, 2, 4, 6, 8  # places in `VECTORS`
 
 ENERGIES = ("channel_j", "operator_j", "follower_j")
 """Energy taken in by each part since the start [J], see `teleop.ledger`."""
@@ -24,7 +34,7 @@ FAULT = "fault"
 
 def signal_names(axes: Sequence[str]) -> tuple[str, ...]:
     """Names (C,) of what is recorded at every tick."""
-    vectors = [f"{stem}_{axis}" for stem in (*LEADER, *FOLLOWER) for axis in axes]
+    vectors = [f"{stem}_{axis}" for stem in VECTORS for axis in axes]
     return (*vectors, *ENERGIES, FAULT)
 
 
@@ -69,25 +79,25 @@ class ByHand:
 
     def take(self) -> Array:
         """The signals (k, C) of the ticks since they were last taken."""
-        leaders = [signals.leader for signals in self._ticks]
-        followers = [signals.follower for signals in self._ticks]
-        vectors = [np.array([getattr(one, name) for one in leaders]) for name in LEADER.values()]
-        vectors += [
-            np.array([getattr(one, name) for one in followers]) for name in FOLLOWER.values()
+        ticks, axes = self._ticks, len(self._teleop.axes)
+        vectors = [
+            vector
+            for _, a, b in ticks
+            for vector in (a.x, a.F_h, a.F_m, a.X, a.V, b.X_sd, b.V_sd, b.X_s, b.F_s)
         ]
-        faults = [
-            float(bool(a.fault) + bool(b.fault)) for a, b in zip(leaders, followers, strict=True)
-        ]
-        energies = self._energies + np.cumsum(self._work(), axis=0)
+        faults = [[float(bool(a.fault) + bool(b.fault))] for _, a, b in ticks]
+        table = np.concatenate(vectors).reshape(len(ticks), -1, axes)
+        energies = self._energies + np.cumsum(self._work(table), axis=0)
         self._energies = energies[-1]
-        self._ticks.clear()
-        return np.column_stack([*vectors, energies, faults])
+        ticks.clear()
+        return np.concatenate([table.reshape(len(table), -1), energies, faults], axis=1)
 
-    def _work(self) -> Array:
+    def _work(self, table: Array) -> Array:
         """Energy (k, 3) [J] taken in during each tick, see `teleop.ledger`."""
-        powers = [(a.F_m @ a.V, a.F_h @ a.V, b.F_s @ b.V_sd) for _, a, b in self._ticks]
-        into_leader, from_hand, into_follower = self.tick * np.array(powers).T
-        return np.column_stack([into_leader - into_follower, -from_hand, into_follower])
+        force = table[:, [FELT, HAND, VIRTUAL]]
+        speed = table[:, [SPEED, SPEED, DESIRED_SPEED]]
+        felt, hand, follower = self.tick * np.sum(force * speed, axis=2).T
+        return np.stack([felt - follower, -hand, follower], axis=1)
 
     def _goal(self, time: float) -> Array:
         return self._in_hand(self._leg.at(time - self._began))

@@ -19,6 +19,8 @@ def least_clearance(zone: SafeZone, robot: Robot, points: Array) -> float:
 
     The fixed base does not count: no actuator is to blame for where it stands.
     """
+    if not zone.surfaces:
+        return np.inf
     clearance = zone.clearance(points[robot.movable]) - robot.radii[robot.movable]
     return float(np.min(clearance, initial=np.inf))
 
