@@ -17,7 +17,10 @@ def worst_rate(recording: sn.Recording) -> float:
     return float(np.max(np.abs(recording.rates) / recording.header.rate_limits[:, 1]))
 
 
-@pytest.mark.parametrize("name", ["free_space", "winding_tube", "inverted_u", "narrow_hole"])
+REACHED = ("free_space", "winding_tube", "inverted_u", "narrow_hole", "jointed_vessel")
+
+
+@pytest.mark.parametrize("name", REACHED)
 def test_every_way_point_is_reached_without_touching_anything(name: str) -> None:
     scenario = sn.load_scenario(SCENARIOS / f"{name}.toml")
     run = sn.run(scenario)

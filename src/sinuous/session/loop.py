@@ -21,8 +21,8 @@ from sinuous.session.surface import SurfaceClearance, least_clearance
 REST_SPEED = 1e-4
 REST_STEPS = 10
 
-# Fast controllers are not looked at after every step, but this often [s].
-SAMPLE = 0.01
+# Controllers whose steps are shorter than that are looked at every so often, not at every step [s].
+FAST, SAMPLE = 0.005, 0.03
 
 
 class PlantFailure(Exception):
@@ -32,7 +32,7 @@ class PlantFailure(Exception):
 def steps(scenario: Scenario) -> Iterator[Sample]:
     """Yield every sample of a scenario's run; a sample's time is that of its end.
 
-    A sample is one control step, or as many as make up `SAMPLE`. A leg ends when its target no
+    A sample is one control step, or some of a fast controller. A leg ends when its target no
     longer moves and the body rests, or after its largest number of steps. The wall clock is never
     read but for the controller's own solve time. The controller sees what sensors yield, never
     how the plant is.
@@ -130,8 +130,8 @@ class _Loop:
 
 
 def steps_per_sample(dt: float) -> int:
-    """Control steps in one sample: one, or as many as make up `SAMPLE`."""
-    return max(1, round(SAMPLE / dt))
+    """Control steps in one sample: one, or of fast controllers as many as make up `SAMPLE`."""
+    return round(SAMPLE / dt) if dt < FAST else 1
 
 
 class Rest:

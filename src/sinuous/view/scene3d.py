@@ -51,13 +51,15 @@ def draw_shapes(figure: Figure, recording: Recording) -> None:
         return
     scene = Scene.of(recording)
     width, depth, _ = scene.high - scene.low
-    grid = figure.add_gridspec(1, 3, width_ratios=(0.9 * (width + depth), width, depth))
+    # The second column is room for labels in space, whose extent the layout does not see.
+    ratios = (0.9 * (width + depth), 0.06 * (width + depth), width, depth)
+    grid = figure.add_gridspec(1, 4, width_ratios=ratios)
     space = Axes3D(figure, grid[0], azim=AZIMUTH, elev=ELEVATION, proj_type="ortho")
     figure.add_axes(space)
     _draw_space(space, scene)
     space.set_title(recording.header.name, pad=-2)
-    front = figure.add_subplot(grid[1])
-    side = figure.add_subplot(grid[2], sharey=front)
+    front = figure.add_subplot(grid[2])
+    side = figure.add_subplot(grid[3], sharey=front)
     _draw_plane(front, scene, (0, 2))
     _draw_plane(side, scene, (1, 2))
     side.tick_params(labelleft=False)
