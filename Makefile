@@ -27,7 +27,9 @@ check: $(STAMP)
 	@set -e; for example in examples/*.py; do \
 		echo "$$example"; $(BIN)/python -W error "$$example"; \
 	done
-	PYTHONWARNINGS=error $(BIN)/sinuous reproduce hachen2025 --quick --out out/check
+	@set -e; for paper in qin2020 hachen2025; do \
+		PYTHONWARNINGS=error $(BIN)/sinuous reproduce $$paper --quick --out out/check/$$paper; \
+	done
 
 # Versions and hashes of all dependencies, for every platform and Python version.
 # Versions stay as they are where they can; make lock UPGRADE=--upgrade raises them.

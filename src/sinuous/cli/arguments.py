@@ -69,6 +69,8 @@ class Reproduce:
     the paper says beside what is measured here.
 
     hachen2025: shape-constrained control of an extensible tendon-driven robot.
+
+    qin2020: a robot of rigid modules, steered by hand over a delay.
     """
 
     paper: Positional[Annotated[Paper, arg(metavar="{qin2020,hachen2025}")]]

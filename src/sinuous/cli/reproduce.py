@@ -23,10 +23,11 @@ def reproduce(arguments: Reproduce) -> int:
     one_thread()  # before numpy is loaded, here and in the workers
     from sinuous.papers import reproduce as papers
     from sinuous.papers.experiment import Experiment
-    from sinuous.papers.hachen2025.paper import HACHEN2025
+    from sinuous.papers.shelf import PAPERS
     from sinuous.papers.workers import ignore
 
-    _check(arguments, [one.name for one in HACHEN2025.experiments])
+    paper = PAPERS[arguments.paper]
+    _check(arguments, [one.name for one in paper.experiments])
     console, out = Console(), Path(arguments.out)
     with BenchProgress(console, arguments.paper) as progress:
 
@@ -34,7 +35,7 @@ def reproduce(arguments: Reproduce) -> int:
             console.print(f"{experiment.title}: {seconds:.0f} s", highlight=False, soft_wrap=True)
 
         done = papers.reproduce(
-            HACHEN2025,
+            paper,
             out,
             only=arguments.only,
             quick=arguments.quick,
@@ -58,7 +59,7 @@ def _check(arguments: Reproduce, names: list[str]) -> None:
             file="--out",
             expected="a folder",
             found=f'"{arguments.out}"',
-            remedy="Name a folder, like --out out/hachen2025.",
+            remedy=f"Name a folder, like --out out/{arguments.paper}.",
         )
     for name in arguments.only:
         if name not in names:

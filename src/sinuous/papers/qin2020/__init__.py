@@ -1,0 +1,1 @@
+"""Paper A: Qin, Huang, Chen, Song and Zhu (2020)."""

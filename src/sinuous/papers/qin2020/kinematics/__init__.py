@@ -1,0 +1,1 @@
+"""2.2: forward and inverse kinematics."""

@@ -1,0 +1,1 @@
+"""4: the two sets of the experiment, for C1 and C2."""

@@ -1,0 +1,1 @@
+"""3.2: signs and units of the virtual force."""
