@@ -6,9 +6,10 @@ import numpy as np
 
 from sinuous.arrays import Array
 
-
-def _nowhere() -> Array:
-    return np.zeros((0, 3))
+# What a measurement says nothing about, shared by all of them.
+NOWHERE, NO_COVARIANCE, AT_THE_TIP = np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(3)
+for _constant in (NOWHERE, NO_COVARIANCE, AT_THE_TIP):
+    _constant.setflags(write=False)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -26,9 +27,9 @@ class Measurement:
 
     tip: Array
     lengths: Array
-    points: Array = field(default_factory=_nowhere)
-    covariance: Array = field(default_factory=lambda: np.zeros((0, 3, 3)))
-    coil: Array = field(default_factory=lambda: np.zeros(3))
+    points: Array = field(default_factory=lambda: NOWHERE)
+    covariance: Array = field(default_factory=lambda: NO_COVARIANCE)
+    coil: Array = field(default_factory=lambda: AT_THE_TIP)
     age: float = 0.0
 
     @property

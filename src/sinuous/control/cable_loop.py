@@ -9,6 +9,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from math import isfinite
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,8 +27,7 @@ from sinuous.robots.jointed import JointedRobot
 ARRIVED = 1e-4  # [m]; the integral of the PID takes long to bring it closer
 
 
-@dataclass(frozen=True, eq=False)
-class CableLoopState:
+class CableLoopState(NamedTuple):
     """What the loop remembers between ticks.
 
     Arguments:
@@ -43,7 +43,7 @@ class CableLoopState:
     lengths: Array
     pid: PidState
 
-    @cached_property
+    @property
     def c(self) -> Array:
         """Configuration (n,) of the encoders' lengths (8)."""
         return self.robot.configuration(self.lengths)

@@ -15,7 +15,7 @@ from sinuous.arrays import Array, ArrayLike, BoolArray
 from sinuous.compiled import inner, kernel
 from sinuous.control.geometric_ik import GeometricIK
 from sinuous.robots.robot import Robot
-from sinuous.robots.routing import Routing, length_of
+from sinuous.robots.routing import Routing, all_lengths
 
 # Load of the worst actuator, by its limit, from which on a step counts as the longest that there
 # is, and how often one is looked for: at 1 kHz lengths are all but linear and one try will do.
@@ -155,12 +155,12 @@ def _between(c: Array, goal: Array, share: float, ahead: Array) -> None:
         ahead[i] = c[i] + share * (goal[i] - c[i])
 
 
-@inner
+@kernel
 def _load(routing: Routing, limits: Array, now: Array, c: Array, dt: float, after: Array) -> float:
     """Rate of the actuator that is worst off, by its limit; writes the lengths at c (P,)."""
+    all_lengths(routing, c, after)
     load = 0.0
     for k in range(now.size):
-        after[k] = length_of(routing, k, c)
         change = after[k] - now[k]
         if change != 0.0:
             load = max(load, change / (dt * (limits[k, 1] if change > 0.0 else limits[k, 0])))

@@ -17,6 +17,19 @@ from sinuous.robots.chain_kernels import Chain
 from sinuous.robots.parts import Insertion, SpeedLimits, Tool
 
 
+def flat_rows(values: ArrayLike) -> tuple[Array, tuple[int, ...]]:
+    """Rows of the last axis (B, n), and the shape of the axes before."""
+    rows = np.ascontiguousarray(values, dtype=float)
+    if rows.ndim == 1:  # by far the most frequent, and at the highest rate
+        return rows[None], ()
+    return rows.reshape(-1, rows.shape[-1]), rows.shape[:-1]
+
+
+def unflat(rows: Array, shape: tuple[int, ...]) -> Array:
+    """What was computed for every row (B, ...), with the axes that `flat_rows` took away."""
+    return rows.reshape(*shape, *rows.shape[1:]) if shape else rows[0]
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChainRobot(ABC):
     """A body that may stand on an insertion stage, the first coordinate, and carry a tool."""
@@ -103,17 +116,17 @@ class ChainRobot(ABC):
 
     def points(self, c: ArrayLike) -> Array:
         """Guarded points (..., S, 3) in the world frame [m], the base first, the tip last."""
-        flat, shape = self._flat(c)
+        flat, shape = flat_rows(c)
         out = np.empty((len(flat), len(self.radii), 3))
         chain_kernels.points_batch(self.chain, self.T_w_b, flat, out)
-        return out.reshape(*shape, *out.shape[1:])
+        return unflat(out, shape)
 
     def points_jacobian(self, c: ArrayLike) -> Array:
         """Derivative (..., S, 3, n) of the points by the configuration, analytic."""
-        flat, shape = self._flat(c)
+        flat, shape = flat_rows(c)
         out = np.empty((len(flat), len(self.radii), 3, flat.shape[1]))
         chain_kernels.points_jacobian_batch(self.chain, self.T_w_b, flat, out)
-        return out.reshape(*shape, *out.shape[1:])
+        return unflat(out, shape)
 
     def tip(self, c: ArrayLike) -> Array:
         """Tip position (..., 3) [m]."""
@@ -125,10 +138,10 @@ class ChainRobot(ABC):
 
     def shape(self, c: ArrayLike) -> tuple[Array, Array]:
         """Points (..., S, 3) [m] and tip pose (..., 4, 4) at once."""
-        flat, shape = self._flat(c)
+        flat, shape = flat_rows(c)
         points, tips = np.empty((len(flat), len(self.radii), 3)), np.empty((len(flat), 4, 4))
         pose_kernels.shapes_batch(self.chain, self.T_w_b, flat, points, tips)
-        return points.reshape(*shape, *points.shape[1:]), tips.reshape(*shape, 4, 4)
+        return unflat(points, shape), unflat(tips, shape)
 
     def points_curvature(self, c: ArrayLike, forces: Array) -> Array:
         """Derivative (n, n) of the generalised force sum_s J_s' f_s, with f (S, 3) held."""
@@ -150,17 +163,10 @@ class ChainRobot(ABC):
 
     def _poses(self, c: ArrayLike, starts: IntArray) -> Array:
         """Poses (..., K, 4, 4) in the world where the sections `starts` (K,) start."""
-        flat, shape = self._flat(c)
+        flat, shape = flat_rows(c)
         out = np.empty((len(flat), len(starts), 4, 4))
         pose_kernels.poses_batch(self.chain, self.T_w_b, flat, starts, out)
-        return out.reshape(*shape, *out.shape[1:])
-
-    def _flat(self, c: ArrayLike) -> tuple[Array, tuple[int, ...]]:
-        """Rows of the last axis (B, n), and the shape of the axes before."""
-        value = np.ascontiguousarray(c, dtype=float)
-        if value.ndim == 1:  # by far the most frequent, and at the highest rate
-            return value[None], ()
-        return value.reshape(-1, value.shape[-1]), value.shape[:-1]
+        return unflat(out, shape)
 
     # --- bend limits ---------------------------------------------------------------------
 

@@ -19,7 +19,7 @@ from sinuous.arrays import Array, ArrayLike, IntArray
 from sinuous.robots import jointed_kernels, routing
 from sinuous.robots.bending import BendLimits
 from sinuous.robots.body import Section
-from sinuous.robots.chain_robot import ChainRobot
+from sinuous.robots.chain_robot import ChainRobot, flat_rows, unflat
 from sinuous.robots.jointed_cables import hole_angles, hole_offsets, route
 from sinuous.robots.jointed_kernels import CABLES
 from sinuous.robots.parts import JointOrder
@@ -170,10 +170,10 @@ class JointedRobot(ChainRobot):
 
     def lengths(self, c: ArrayLike) -> Array:
         """Actuator lengths (..., P) [m] of configurations (..., n) (5)-(7)."""
-        flat, shape = self._flat(c)
+        flat, shape = flat_rows(c)
         out = np.empty((len(flat), len(self.routing.b)))
         routing.lengths_batch(self.routing, flat, out)
-        return out.reshape(*shape, -1)
+        return unflat(out, shape)
 
     def lengths_jacobian(self, c: ArrayLike) -> Array:
         """Their derivative (P, n) at one configuration (n,), analytic."""
@@ -197,11 +197,11 @@ class JointedRobot(ChainRobot):
         return self._solve(lengths)[1]
 
     def _solve(self, lengths: ArrayLike) -> tuple[Array, Array]:
-        flat, shape = self._flat(lengths)
+        flat, shape = flat_rows(lengths)
         c = np.empty((len(flat), self._routing.A.shape[1]))
         residual = np.empty((len(flat), self.joints))
         jointed_kernels.configurations(self._routing, flat, c, residual)
-        return c.reshape(*shape, -1), residual.reshape(*shape, -1)
+        return unflat(c, shape), unflat(residual, shape)
 
     # --- body ----------------------------------------------------------------------------
 

@@ -118,11 +118,28 @@ def length_gradient(routing: Routing, k: int, c: Array, out: Array) -> None:
 
 
 @kernel
+def all_lengths(routing: Routing, c: Array, out: Array) -> None:
+    """Lengths (P,) [m] of all actuators at one configuration (n,); each angle is turned by once."""
+    trig, known = np.empty((c.size, 2)), np.zeros(c.size, np.bool_)
+    for x in range(routing.column.size):
+        for j in range(routing.column[x], routing.column[x] + 2):
+            if not known[j]:
+                trig[j, 0], trig[j, 1], known[j] = np.sin(c[j]), np.cos(c[j]), True
+    for k in range(routing.b.size):
+        total = float(routing.b[k])
+        for j in range(routing.A.shape[1]):
+            total += routing.A[k, j] * c[j]
+        for x in range(routing.first[k], routing.first[k + 1]):
+            j = routing.column[x]
+            total += stretch(routing, x, trig[j, 0], trig[j, 1], trig[j + 1, 0], trig[j + 1, 1])[0]
+        out[k] = total
+
+
+@kernel
 def lengths_batch(routing: Routing, c: Array, out: Array) -> None:
     """Lengths (B, P) [m] of configurations (B, n)."""
     for i in range(c.shape[0]):
-        for k in range(routing.b.size):
-            out[i, k] = length_of(routing, k, c[i])
+        all_lengths(routing, c[i], out[i])
 
 
 @kernel
