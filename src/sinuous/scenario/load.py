@@ -73,7 +73,7 @@ def load_scenario(path: str | Path, *, set: Iterable[str] = ()) -> Scenario:
         encoder_step=table.plant.encoder_step,
         plant=recorded,
         sensor=sensor_of(table.sensor, robot),
-        teleop=source.teleop(table.teleop, mpc, robot.home if start is None else start),
+        teleop=source.teleop(table.teleop, mpc, robot.home if start is None else start, table.seed),
         file=str(path),
         text=toml_text(_absolute(data, source)),
         robot_text=read_text(robot_path(source.robot_name(table.robot.file))),
@@ -106,6 +106,9 @@ def _absolute(data: Mapping[str, object], source: Source) -> dict[str, object]:
         for key in keys & tables[name].keys():
             tables[name][key] = _resolved(tables[name][key], source)
     plant = cast(dict[str, dict[str, object]], result.get("plant", {}))
+    teleop = cast(dict[str, dict[str, object]], result.get("teleop", {}))
+    if "trace" in teleop.get("link", {}):
+        teleop["link"]["trace"] = _resolved(teleop["link"]["trace"], source)
     if "recorded" in plant:
         plant["recorded"]["csv"] = _resolved(plant["recorded"]["csv"], source)
     robot = tables["robot"]

@@ -27,6 +27,7 @@ from sinuous.scenario.plant_tables import RecordedTable
 from sinuous.scenario.tables import PathTable, RobotChoice, ZoneTable
 from sinuous.scenario.teleop import Teleoperation
 from sinuous.scenario.teleop_tables import TeleopTable
+from sinuous.teleop.trace import Trace
 
 T = TypeVar("T")
 
@@ -167,10 +168,18 @@ class Source:
         return partial(RecordedPlant, robot, record, coil=table.coil)
 
     def teleop(
-        self, table: TeleopTable | None, mpc: ShapeConstrainedMPC, start: Array
+        self, table: TeleopTable | None, mpc: ShapeConstrainedMPC, start: Array, seed: int
     ) -> Teleoperation | None:
         """The operator far away, None for none."""
-        return table and Teleoperation(table=table, mpc=mpc, tip=mpc.robot.tip(start))
+        if table is None:
+            return None
+        name, trace = None if table.link is None else table.link.trace, None
+        if name is not None:
+            path = self.at(name)
+            self.found("teleop.link.trace", path)
+            trace = Trace.load(path)
+        tip = mpc.robot.tip(start)
+        return Teleoperation(table=table, mpc=mpc, tip=tip, trace=trace, seed=seed)
 
     def found(self, field: str, path: Path) -> None:
         """Refuse a file that is not there, in the words of the scenario."""

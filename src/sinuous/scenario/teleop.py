@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from sinuous.arrays import Array
 from sinuous.control.mpc import ShapeConstrainedMPC
+from sinuous.scenario.links import bounds_of, link_of, receiver_of
 from sinuous.scenario.teleop_tables import (
     ForceTable,
     HandChoice,
@@ -27,7 +28,11 @@ from sinuous.teleop.leader import LeaderDevice
 from sinuous.teleop.mapping import Mapping
 from sinuous.teleop.move_and_wait import MoveAndWait
 from sinuous.teleop.operators import Goal, ImpedanceOperator, Operator, Prescribed
-from sinuous.teleop.waves import ModifiedWaves, Scheme, StandardWaves
+from sinuous.teleop.passivity import PassivityControl
+from sinuous.teleop.position_force import PositionForce
+from sinuous.teleop.scheme import Scheme
+from sinuous.teleop.trace import Trace
+from sinuous.teleop.waves import ModifiedWaves, StandardWaves
 
 PLANE, SPACE = ("x", "z"), ("x", "y", "z")
 
@@ -42,11 +47,15 @@ class Teleoperation:
         table: what the scenario says
         mpc: whose robot and zone it is for
         tip: where the tip starts (3,) [m]
+        trace: recorded delays of the link, None for none
+        seed: of what is random on the link
     """
 
     table: TeleopTable
     mpc: ShapeConstrainedMPC
     tip: Array
+    trace: Trace | None = None
+    seed: int = 0
 
     @property
     def dt(self) -> float:
@@ -81,14 +90,21 @@ class Teleoperation:
             goal: where the hand wants to be (A,) [m], in the leader's coordinates, by time [s]
             stops: the same one by one, for an operator who moves and waits
         """
-        table, mapping = self.table, self.mapping
+        table, mapping, protection = self.table, self.mapping, self.table.protection
         limit = table.operator.workspace
+        felt, speed = bounds_of(table.limits)
         return Bilateral.connect(
             operator=_operator(table.operator, goal, stops),
             mapping=mapping,
             force=_force(table.force, mapping, self.mpc),
             scheme=_scheme(table),
-            delay=table.delay,
+            link=link_of(
+                table.link, delay=table.delay, trace=self.trace, seed=self.seed, dt=self.dt
+            ),
+            receiver=None if protection is None else receiver_of(protection),
+            control=PassivityControl() if protection and protection.enabled else None,
+            felt=felt,
+            speed=speed,
             device=LeaderDevice(mass=table.operator.mass, limit=inf if limit is None else limit),
             correction=table.correction
             and DriftCorrection(rate=table.correction.rate, speed=table.correction.speed),
@@ -110,6 +126,8 @@ def _scheme(table: TeleopTable) -> Scheme:
                 dt=dt,
                 allow_active=waves.allow_active,
             )
+        case SchemeChoice.POSITION_FORCE:
+            return PositionForce(local_damping=waves.impedance, dt=dt)
 
 
 def _mapping(table: MappingTable, tip: Array) -> Mapping:

@@ -20,6 +20,7 @@ from sinuous.files import (
     Stiffness,
     Turning,
 )
+from sinuous.scenario.link_tables import BoundsTable, LinkTable, PassivityTable
 from sinuous.teleop.boundary import BoxForce
 from sinuous.teleop.drift import DriftCorrection
 from sinuous.teleop.force import ErrorForce
@@ -42,6 +43,7 @@ class SchemeChoice(Enum):
     STANDARD = "standard"  # wave variables as first published
     C1 = "c1"  # what paper A compares itself with
     C2 = "c2"  # paper A's own
+    POSITION_FORCE = "position_force"  # velocity and force as they are: needs passivity control
 
 
 class Space(Enum):
@@ -61,7 +63,10 @@ class HandChoice(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class WavesTable:
-    """`[teleop.waves]`: numbers of the scheme; gain and cutoff are those of c2."""
+    """`[teleop.waves]`: numbers of the scheme; gain and cutoff are those of c2.
+
+    The impedance of position_force is the damping of the leader's own motion.
+    """
 
     impedance: Annotated[Impedance, _Positive] = ModifiedWaves.impedance
     gain: Annotated[float, _Positive] | None = None
@@ -163,6 +168,15 @@ class TeleopTable:
     operator: OperatorTable = field(default_factory=OperatorTable)
     force: ForceTable = field(default_factory=ForceTable)
     correction: CorrectionTable | None = None
+    link: LinkTable | None = None
+    passivity: PassivityTable | None = None  # on by default where there is a link
+    limits: BoundsTable | None = None
+
+    @property
+    def protection(self) -> PassivityTable | None:
+        """What both ends do about the link: nothing on a constant delay unless asked for."""
+        needed = self.link is not None or self.scheme is SchemeChoice.POSITION_FORCE
+        return PassivityTable() if self.passivity is None and needed else self.passivity
 
     def __post_init__(self) -> None:
         axes = 2 if self.mapping.space is Space.PLANE else 3
@@ -178,6 +192,14 @@ class TeleopTable:
                 ("waves", "gain" if self.waves.gain is not None else "cutoff"),
                 expected=f'none with scheme = "{self.scheme.value}"',
                 remedy='Take it out, or set scheme = "c2".',
+            )
+        protected = self.protection is not None and self.protection.enabled
+        if protected and self.waves.gain is not None and self.waves.gain < PASSIVE_GAIN:
+            raise FieldError(
+                ("waves", "gain"),
+                expected=f"{PASSIVE_GAIN} or more under passivity control",
+                remedy="Ports that make energy by themselves cannot be protected from the link: "
+                "raise it, or set passivity.enabled = false.",
             )
         cutoff = ModifiedWaves.cutoff if self.waves.cutoff is None else self.waves.cutoff
         if self.scheme is SchemeChoice.C2 and cutoff > self.rate:

@@ -5,20 +5,19 @@ from typing import Generic, NamedTuple, Self
 
 from sinuous.arrays import ArrayLike
 from sinuous.teleop.drift import DriftCorrection
-from sinuous.teleop.ends import (
-    FollowerEnd,
-    FollowerSignals,
-    FollowerState,
-    LeaderEnd,
-    LeaderSignals,
-    LeaderState,
-)
+from sinuous.teleop.follower_end import FollowerEnd, FollowerSignals, FollowerState
 from sinuous.teleop.force import VirtualForce
 from sinuous.teleop.leader import LeaderDevice
-from sinuous.teleop.link import ConstantDelay, Link, LinkModel, Packet
+from sinuous.teleop.leader_end import LeaderEnd, LeaderSignals, LeaderState
+from sinuous.teleop.limits import Limits
+from sinuous.teleop.link import ConstantDelay, Link, LinkModel
 from sinuous.teleop.mapping import Mapping
 from sinuous.teleop.operators import O, Operator
-from sinuous.teleop.waves import ModifiedWaves, Scheme
+from sinuous.teleop.passivity import PassivityControl
+from sinuous.teleop.ramp import Ramp
+from sinuous.teleop.receivers import Packets, Receiver, ZeroFill
+from sinuous.teleop.scheme import Scheme
+from sinuous.teleop.waves import ModifiedWaves
 
 
 class Signals(NamedTuple):
@@ -43,15 +42,15 @@ class BilateralState(NamedTuple, Generic[O]):
     Arguments:
         leader, follower: what the ends remember
         forward, backward: the links, with the packets under way
-        to_leader, to_follower: what arrives in the next tick
+        to_leader, to_follower: all that arrives for the next tick
     """
 
     leader: LeaderState[O]
     follower: FollowerState
     forward: Link
     backward: Link
-    to_leader: Packet | None
-    to_follower: Packet | None
+    to_leader: Packets
+    to_follower: Packets
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,7 +65,7 @@ class Bilateral(Generic[O]):
         forward, backward: what connects them, to the follower and back to the leader
 
     Raises:
-        ValueError: if the parts have different ticks, axes or schemes
+        ValueError: if the parts have different ticks, axes, schemes or control
     """
 
     leader: LeaderEnd[O]
@@ -77,6 +76,8 @@ class Bilateral(Generic[O]):
     def __post_init__(self) -> None:
         if self.leader.scheme != self.follower.scheme:
             raise ValueError("both ends must use the same scheme")
+        if (self.leader.control is None) != (self.follower.control is None):
+            raise ValueError("passivity control takes both ends: each says what it has sent")
         if self.leader.mapping.scale.size != self.follower.mapping.scale.size:
             raise ValueError("both ends must have the same number of axes")
         for name, link in (("forward", self.forward), ("backward", self.backward)):
@@ -92,31 +93,58 @@ class Bilateral(Generic[O]):
         force: VirtualForce,
         scheme: Scheme | None = None,
         delay: float = 0.0,
+        link: LinkModel | None = None,
+        receiver: Receiver | None = None,
+        control: PassivityControl | None = None,
         device: LeaderDevice | None = None,
         correction: DriftCorrection | None = None,
+        felt: Limits | None = None,
+        speed: Limits | None = None,
+        ramp: Ramp | None = None,
     ) -> Self:
-        """Both ends with the same scheme and mapping, and the same constant delay both ways.
+        """Both ends with the same scheme, mapping and receiver, and the same link both ways.
 
         Arguments:
             operator: whoever holds the device
             mapping: from the device's workspace to the world
             force: what the operator shall feel
             scheme: of the waves, by default the paper's own (C2)
-            delay: one way [s]
+            delay: one way, of a link that is always the same [s]
+            link: another link than that
+            receiver: which wave to use; by default the one that arrives in a tick, or zero
+            control: of passivity; None for none, which is enough for a constant delay
             device: what is held
             correction: of the desired point's drift; None as printed
+            felt: limits of the force from afar [N], [N/s]
+            speed: limits of the desired velocity without a force [m/s], [m/s^2]
+            ramp: for joining and leaving
 
         Raises:
             ValueError: if the delay is negative or not finite
         """
         scheme = ModifiedWaves.c2() if scheme is None else scheme
-        link = ConstantDelay(delay=delay, dt=scheme.dt)
+        link = ConstantDelay(delay=delay, dt=scheme.dt) if link is None else link
+        receiver = ZeroFill() if receiver is None else receiver
         return cls(
             leader=LeaderEnd(
-                scheme=scheme, mapping=mapping, operator=operator, device=device or LeaderDevice()
+                scheme=scheme,
+                mapping=mapping,
+                operator=operator,
+                device=device or LeaderDevice(),
+                receiver=receiver,
+                control=control,
+                limits=felt,
+                ramp=ramp or Ramp(),
             ),
             follower=FollowerEnd(
-                scheme=scheme, mapping=mapping, force=force, correction=correction
+                scheme=scheme,
+                mapping=mapping,
+                force=force,
+                correction=correction,
+                receiver=receiver,
+                control=control,
+                limits=speed,
+                ramp=ramp or Ramp(),
             ),
             forward=link,
             backward=link,
@@ -127,23 +155,34 @@ class Bilateral(Generic[O]):
         """Time of a tick [s]."""
         return self.leader.scheme.dt
 
-    def init(self, tip_w: ArrayLike) -> BilateralState[O]:
+    def init(self, tip_w: ArrayLike, *, running: bool = True) -> BilateralState[O]:
         """At rest, the follower's tip at (3,) [m], the leader where (22) puts it for that.
+
+        Arguments:
+            running: whether both ends take part from the start, or pause until `resume`
 
         Raises:
             ValueError: if the tip is not three finite numbers
         """
-        follower = self.follower.init(tip_w)
-        leader = self.leader.init(follower.X_sd)
-        forward, backward = self.forward.open(), self.backward.open()
-        return BilateralState(leader, follower, forward, backward, None, None)
+        follower = self.follower.init(tip_w, running=running)
+        leader = self.leader.init(follower.X_sd, running=running)
+        forward, backward = self.forward.open(0), self.backward.open(1)
+        return BilateralState(leader, follower, forward, backward, (), ())
+
+    def pause(self, state: BilateralState[O]) -> BilateralState[O]:
+        """Have the leader leave the channel, and the follower as soon as it hears of it."""
+        return state._replace(leader=self.leader.pause(state.leader))
+
+    def resume(self, state: BilateralState[O]) -> BilateralState[O]:
+        """Have both join it again."""
+        return state._replace(leader=self.leader.resume(state.leader))
 
     def step(self, state: BilateralState[O], tip_w: ArrayLike) -> tuple[BilateralState[O], Signals]:
         """One tick, given the follower's measured tip (3,) [m]; never raises for bad numbers."""
         leader, follower, forward, backward, to_leader, to_follower = state
-        time = leader.tick * self.dt
-        leader, at_leader, ahead = self.leader.step(leader, to_leader)
-        follower, at_follower, back = self.follower.step(follower, tip_w, to_follower)
+        time = leader.tick * self.leader.scheme.dt
+        leader, at_leader, ahead = self.leader.step(leader, to_leader or ())
+        follower, at_follower, back = self.follower.step(follower, tip_w, to_follower or ())
         after = BilateralState(
             leader, follower, forward, backward, backward.step(back), forward.step(ahead)
         )

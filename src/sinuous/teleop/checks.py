@@ -25,3 +25,15 @@ def vector(name: str, value: ArrayLike) -> Array:
     if copy.ndim != 1 or not copy.size or not np.all(np.isfinite(copy)):
         raise ValueError(f"{name} must be a vector of finite numbers, not {value}")
     return copy
+
+
+def probability(name: str, value: float) -> None:
+    """Raise a ValueError unless a number is within [0, 1]."""
+    if not 0.0 <= value <= 1.0:
+        raise ValueError(f"{name} must be within 0 and 1, not {value}")
+
+
+def not_negative(name: str, value: float) -> None:
+    """Raise a ValueError unless a number is zero or more; it may be infinite."""
+    if not value >= 0.0:
+        raise ValueError(f"{name} must be zero or more, not {value}")

@@ -26,6 +26,15 @@ class DriftCorrection:
     without: its energy never falls below zero. The tank is bounded, so that what was dissipated
     long ago is not let loose at once; what does not fit is lost, which is on the safe side.
 
+    Under passivity control energy that was heard of and not used, which is what loss leaves behind,
+    pays for what the tank cannot: it counts as used then. With c the sums of the prices and l of
+    what was dissipated, (2) of `passivity` becomes
+
+        sum of - F_s . v_sd dt = sent - used_by_waves + l - c >= sent - used
+
+    as before, for c is at most l and what was used for the correction. So it is for standard waves,
+    and for velocity and force without waves, which dissipate nothing.
+
     Arguments:
         rate: of the decay of an offset [1/s]
         speed: largest v_c [m/s]
@@ -45,9 +54,16 @@ class DriftCorrection:
         zero_or_more("capacity", self.capacity)
 
     def step(
-        self, tank: float, lost: float, force: Array, offset: Array, dt: float
-    ) -> tuple[float, Array]:
-        """What is in the tank after a tick [J], and v_c (A,) [m/s].
+        self,
+        tank: float,
+        lost: float,
+        force: Array,
+        offset: Array,
+        dt: float,
+        *,
+        spare: float = 0.0,
+    ) -> tuple[float, float, Array]:
+        """What is in the tank after a tick [J], what was spent beyond [J], and v_c (A,) [m/s].
 
         Arguments:
             tank: energy in it [J]
@@ -55,14 +71,25 @@ class DriftCorrection:
             force: F_s (A,) [N]
             offset: from the desired point to the leader's (A,) [m]
             dt: time of the tick [s]
+            spare: energy that was heard of and not used [J]
         """
         wanted = self.rate * offset
         fastest = sqrt(kernels.work(wanted, wanted))
         if fastest > self.speed:
             wanted *= self.speed / fastest
-        tank += lost * dt
-        price = kernels.work(force, wanted) * dt
-        if price > tank:
-            wanted *= tank / price
-            price = tank
-        return min(tank - max(price, 0.0), self.capacity), wanted
+        tank, price = filled(tank, lost * dt), cost(force, wanted, dt)
+        if price > tank + spare:
+            wanted *= (tank + spare) / price
+            price = tank + spare
+        from_tank = min(price, tank)
+        return min(tank - from_tank, self.capacity), price - from_tank, wanted
+
+
+def filled(tank: float, energy: float) -> float:
+    """What is in the tank with what was dissipated [J]."""
+    return tank + energy
+
+
+def cost(force: Array, v_c: Array, dt: float) -> float:
+    """Energy that v_c takes from the channel; zero if it takes none [J]."""
+    return max(kernels.work(force, v_c) * dt, 0.0)

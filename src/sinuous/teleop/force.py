@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from sinuous.arrays import Array
-from sinuous.teleop import kernels
+from sinuous.teleop import energy_kernels, kernels
 from sinuous.teleop.checks import positive, zero_or_more
 
 
@@ -57,9 +57,8 @@ class Together:
 
     def force(self, motion: Motion) -> Array:
         """The sum (A,) [N]."""
-        first, *others = self.parts
-        total = first.force(motion)
-        for part in others:
+        total = self.parts[0].force(motion)
+        for part in self.parts[1:]:
             total = total + part.force(motion)
         return total
 
@@ -110,4 +109,30 @@ class ErrorForceAlong:
         """F_e (A,) [N]."""
         out = np.empty(motion.X_s.size)
         kernels.error_along(self.gain, self.length, motion.X_sd, motion.X_s, out)
+        return out
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CappedForce:
+    """Another force, of a size within bounds: beyond, only its direction is kept.
+
+    Arguments:
+        part: the other force
+        largest: F_max [N]
+
+    Raises:
+        ValueError: if the largest is not positive
+    """
+
+    part: VirtualForce
+    largest: float
+
+    def __post_init__(self) -> None:
+        positive("largest", self.largest)
+
+    def force(self, motion: Motion) -> Array:
+        """The force, at most F_max long (A,) [N]."""
+        force = self.part.force(motion)
+        out = np.empty(force.size)
+        energy_kernels.capped(self.largest, force, out)
         return out

@@ -20,21 +20,45 @@ def finite(a: Array, b: Array, c: Array) -> bool:
 
 
 @inner
+def work(F: Array, s: Array) -> float:
+    """F . s."""
+    total = 0.0
+    for i in range(F.size):
+        total += F[i] * s[i]
+    return total
+
+
+@inner
+def times(a: float, x: Array, out: Array) -> None:
+    """a x."""
+    for i in range(x.size):
+        out[i] = a * x[i]
+
+
+@inner
+def sound(wave: Array, position: Array, energy: float) -> bool:
+    """Whether what a packet says is finite, and its energy not negative."""
+    total = 0.0 * energy
+    for i in range(wave.size):
+        total += 0.0 * wave[i] + 0.0 * position[i]
+    return total == 0.0 and energy >= 0.0
+
+
+@inner
 def modified_leader(
-    gain: float, b: float, share: float, g: Array, v: Array, received: Array,
-    filtered: Array, force: Array, sent: Array,
+    gain: float, b: float, share: float, before: Array, v: Array, received: Array,
+    force: Array, sent: Array,
 ) -> None:  # fmt: skip
-    """(16) and (19): what the low-pass becomes, the force and the wave to send.
+    """(16) and (19): the force, and what the low-pass becomes and is sent as a wave.
 
     Arguments:
         share: of the way to its input that the low-pass goes in a tick, lambda dt
-        g: filtered b v + F_r (A,) [N]
+        before: the wave that was sent in the tick before, g / K (A,)
     """
-    for i in range(g.size):
-        F_r = gain * received[i]
-        filtered[i] = g[i] + share * (b * v[i] + F_r - g[i])
+    for i in range(before.size):
+        F_r, g = gain * received[i], gain * before[i]
         force[i] = F_r + gain * b * v[i]
-        sent[i] = filtered[i] / gain
+        sent[i] = (g + share * (b * v[i] + F_r - g)) / gain
 
 
 @inner
@@ -88,6 +112,14 @@ def move_device(
         if abs(place[i]) > max(limit, abs(x[i])):  # farther beyond the stop than it was
             place[i] = max(min(place[i], max(x[i], limit)), min(x[i], -limit))
             speed[i] = (place[i] - x[i]) / dt
+
+
+@inner
+def on_wave_side(scale: Array, x: Array, v: Array, X: Array, V: Array) -> None:
+    """Position and velocity of the device on the wave side."""
+    for i in range(x.size):
+        X[i] = scale[i] * x[i]
+        V[i] = scale[i] * v[i]
 
 
 @inner
@@ -215,6 +247,15 @@ def difference(a: Array, b: Array, dt: float, out: Array) -> None:
 
 
 @inner
+def see(
+    axes: Array, origin: Array, p: Array, before: Array, dt: float, X: Array, V: Array
+) -> None:  # fmt: skip
+    """The coordinates of a point along axes, and their change from before by time."""
+    project(axes, origin, p, X)
+    difference(X, before, dt, V)
+
+
+@inner
 def advance(x: Array, v: Array, dt: float, out: Array) -> None:
     """x + dt v."""
     for i in range(out.size):
@@ -222,9 +263,9 @@ def advance(x: Array, v: Array, dt: float, out: Array) -> None:
 
 
 @inner
-def work(F: Array, s: Array) -> float:
-    """F . s."""
-    total = 0.0
-    for i in range(F.size):
-        total += F[i] * s[i]
-    return total
+def advance_if_finite(
+    x: Array, v: Array, dt: float, a: Array, b: Array, out: Array
+) -> bool:  # fmt: skip
+    """x + dt v, and whether it and two other vectors are finite."""
+    advance(x, v, dt, out)
+    return finite(out, a, b)

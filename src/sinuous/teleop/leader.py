@@ -7,20 +7,29 @@ from typing import NamedTuple
 import numpy as np
 
 from sinuous.arrays import Array
-from sinuous.teleop import kernels
+from sinuous.teleop import energy_kernels, kernels
 from sinuous.teleop.checks import positive
+
+ROUNDING = 1e-15  # of the energy of a tick [J]
 
 
 class Load(NamedTuple):
     """What a device works against in a tick: F_m = force + damping v.
 
+    Under passivity control a force may yield: of it stays h = 1 - a / (4 spare), zero or more, when
+    the device moves so that it gives out an energy a, see `position_force`.
+
     Arguments:
         force: that it would feel at rest (A,) [N]
         damping: with which the port answers its velocity at once (A,) [N s/m]
+        spare: energy that a force that yields may give out [J]; infinite for one that does not
+        scale: of the velocity that this energy is counted with (A,); only for a force that yields
     """
 
     force: Array
     damping: Array
+    spare: float = inf
+    scale: Array = np.ones(0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,12 +67,32 @@ class LeaderDevice:
             load: what it works against
         """
         place, speed = np.empty(x.size), np.empty(x.size)
-        force, damping = load
-        kernels.move_device(self.mass, dt, self.limit, x, v, F_h, force, damping, place, speed)
+        kernels.move_device(
+            self.mass, dt, self.limit, x, v, F_h, load.force, load.damping, place, speed
+        )
         return place, speed
+
+    def give_way(
+        self, x: Array, v: Array, F_h: Array, load: Load, dt: float
+    ) -> tuple[float, Array, Array]:
+        """The share h that stays of a force that yields, and then as `step`.
+
+        Where a stop of the workspace holds one axis up, the others may move so that h is too much.
+        A smaller one is not: the less a force, the less way it moves anyone.
+        """
+        force, damping, spare, scale = load
+        h = energy_kernels.kept(self.mass, dt, v, F_h, force, damping, spare, scale)
+        place, speed = self.step(x, v, F_h, Load(h * force, damping), dt)
+        given = -h * dt * kernels.work(force, scale * speed)
+        if given > spare + ROUNDING:
+            h *= spare / given
+            place, speed = self.step(x, v, F_h, Load(h * force, damping), dt)
+        return h, place, speed
 
     def force_for(self, speed: Array, v: Array, load: Load, dt: float) -> Array:
         """The operator's force (A,) [N] that takes the device from velocity v to speed [m/s]."""
-        F_h = np.empty(v.size)
-        kernels.drive(self.mass, dt, speed, v, load.force, load.damping, F_h)
+        F_h, force = np.empty(v.size), load.force
+        if load.spare < inf:
+            force = energy_kernels.left(force, load.scale * speed, load.spare, dt) * force
+        kernels.drive(self.mass, dt, speed, v, force, load.damping, F_h)
         return F_h

@@ -9,23 +9,31 @@ from sinuous.teleop.checks import positive, zero_or_more
 
 
 class Packet(NamedTuple):
-    """What one end tells the other.
+    """What one end tells the other in a tick.
 
     Arguments:
         wave: (A,)
         position: of the sender on the wave side (A,) [m]: the leader's, for a follower that
             corrects its drift; the follower's desired one
+        number: of the packet, one more with every tick
+        time: when it was sent [s]
+        energy: that the sender has put into its waves since the start, this one included [J]
+        running: whether the sender takes part, or wants to pause
     """
 
     wave: Array
     position: Array
+    number: int = 0
+    time: float = 0.0
+    energy: float = 0.0
+    running: bool = True
 
 
 class Link(Protocol):
     """One way of a connection with packets under way: a simulated part, like a plant."""
 
-    def step(self, sent: Packet | None) -> Packet | None:
-        """Take what is sent in this tick and yield what the other end has by the next, if any."""
+    def step(self, sent: Packet) -> tuple[Packet, ...]:
+        """Take what is sent in this tick and yield all that the other end has by the next."""
         ...
 
 
@@ -37,8 +45,12 @@ class LinkModel(Protocol):
         """Time of a tick [s]."""
         ...
 
-    def open(self) -> Link:
-        """One way of a connection, with nothing under way."""
+    def open(self, way: int = 0) -> Link:
+        """One way of a connection, with nothing under way.
+
+        Arguments:
+            way: 0 to the follower, 1 back to the leader: each way has luck of its own
+        """
         ...
 
 
@@ -66,7 +78,7 @@ class ConstantDelay:
         """From the tick in which a packet is sent to the one in which it is received."""
         return max(round(self.delay / self.dt), 1)
 
-    def open(self) -> Link:
+    def open(self, way: int = 0) -> Link:
         """One way of a connection, with nothing under way."""
         return _Line(self.ticks)
 
@@ -75,9 +87,9 @@ class _Line:
     """Packets under way; what is sent in one tick can be had in the next at the earliest."""
 
     def __init__(self, ticks: int) -> None:
-        self._under_way = deque[Packet | None]([None] * (ticks - 1))
+        self._under_way = deque[tuple[Packet, ...]]([()] * (ticks - 1))
 
-    def step(self, sent: Packet | None) -> Packet | None:
-        """Take what is sent in this tick and yield what the other end has by the next, if any."""
-        self._under_way.append(sent)
+    def step(self, sent: Packet) -> tuple[Packet, ...]:
+        """Take what is sent in this tick and yield all that the other end has by the next."""
+        self._under_way.append((sent,))
         return self._under_way.popleft()

@@ -79,8 +79,24 @@ class Mapping:
         Raises:
             ValueError: if the point is not three numbers
         """
-        out, p = np.empty(self.scale.size), np.array(p_w, dtype=np.float64)
-        if p.shape != (3,):
-            raise ValueError(f"a point must be three numbers, not {p.shape}")
-        kernels.project(self.axes, self.origin, p, out)
+        out = np.empty(self.scale.size)
+        kernels.project(self.axes, self.origin, _three(p_w), out)
         return out
+
+    def watch(self, p_w: ArrayLike, before: Array | None, dt: float) -> tuple[Array, Array]:
+        """The same and its velocity (A,) [m/s] since it was there a tick before; zero for None.
+
+        Raises:
+            ValueError: if the point is not three numbers
+        """
+        X, V = np.empty(self.scale.size), np.empty(self.scale.size)
+        seen = X if before is None else before
+        kernels.see(self.axes, self.origin, _three(p_w), seen, dt, X, V)
+        return X, V
+
+
+def _three(p_w: ArrayLike) -> Array:
+    p = np.array(p_w, dtype=np.float64)
+    if p.shape != (3,):
+        raise ValueError(f"a point must be three numbers, not {p.shape}")
+    return p

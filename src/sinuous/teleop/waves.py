@@ -1,21 +1,29 @@
 """Wave variables as pairs of two-ports (paper A, section 3.1), for any number of axes.
 
-The leader's port takes a velocity and gives a force, the follower's takes a force and gives a
-velocity. A port reads its own samples and what it has received; what happens on the way is the
-link's. Per axis and tick the channel between them absorbs F_m v_m - F_s v_sd.
+Their energy is accounted for in `passivity`.
 """
 
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, isnan, sqrt
-from typing import NamedTuple, Protocol, Self
+from typing import Self
 
 import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.teleop import kernels
 from sinuous.teleop.checks import positive
+from sinuous.teleop.passivity import WaveEnergy
+from sinuous.teleop.scheme import NOTHING, Scheme
+
+__all__ = [
+    "PASSIVE_GAIN",
+    "ActiveChannelWarning",
+    "ModifiedWaves",
+    "Scheme",
+    "StandardWaves",
+]
 
 PASSIVE_GAIN = 0.5
 """The smallest K that makes no energy, whatever b, the delay and the filter (notes A11)."""
@@ -30,66 +38,8 @@ class ActiveChannelWarning(UserWarning):
     """A channel that makes energy was asked for, and built."""
 
 
-class PortState(NamedTuple):
-    """What a port remembers between ticks.
-
-    Arguments:
-        memory: of the forward low-pass, K u_m (A,) [N]; empty (0,) for a port without memory
-    """
-
-    memory: Array
-
-
-class Scheme(Protocol):
-    """How velocity and force become waves and waves become force and velocity.
-
-    Velocities, forces and waves are (A,), on the wave side: in metres of the follower.
-    """
-
-    @property
-    def dt(self) -> float:
-        """Time of a tick [s]."""
-        ...
-
-    @property
-    def damping(self) -> float:
-        """What the leader's port answers a velocity with at once [N s/m]."""
-        ...
-
-    def force_at_rest(self, received: Array) -> Array:
-        """F_m of a leader that stands still (A,) [N]; moving, damping v comes on top."""
-        ...
-
-    def leader_init(self, axes: int) -> PortState:
-        """The leader's port with nothing in it."""
-        ...
-
-    def follower_init(self, axes: int) -> PortState:
-        """The follower's port with nothing in it."""
-        ...
-
-    def leader_step(
-        self, state: PortState, v: Array, received: Array
-    ) -> tuple[PortState, Array, Array]:
-        """Force on the leader [N] and wave to send, given its velocity [m/s]."""
-        ...
-
-    def follower_step(
-        self, state: PortState, force: Array, received: Array
-    ) -> tuple[PortState, Array, Array]:
-        """Desired velocity of the follower [m/s] and wave to send, given the force on it [N]."""
-        ...
-
-    def follower_loss(self, force: Array, received: Array) -> float:
-        """Power [W] that the follower's port dissipates for certain, whatever the link does."""
-        ...
-
-
-_NOTHING = PortState(memory=np.zeros(0))
-
-
 @dataclass(frozen=True, kw_only=True)
-class StandardWaves:
+class StandardWaves(WaveEnergy):
     """Wave variables as first published: u = (b v + F) / sqrt(2 b), v = (b v - F) / sqrt(2 b).
 
     The channel stores energy and loses none: b P is (w_m^2 - w_r^2) / 2 in waves.
@@ -111,6 +61,26 @@ class StandardWaves:
         positive("impedance", self.impedance)
         positive("dt", self.dt)
 
+    @cached_property
+    def wave_factor(self) -> float:
+        """dt / 2: energy of a wave by its square, in a tick [J]."""
+        return 0.5 * self.dt
+
+    @property
+    def force_gain(self) -> float:
+        """sqrt(2 b)."""
+        return sqrt(2.0 * self.impedance)
+
+    @property
+    def speed_gain(self) -> float:
+        """sqrt(2 / b)."""
+        return sqrt(2.0 / self.impedance)
+
+    @property
+    def is_passive(self) -> bool:
+        """Yes: all that comes in goes out."""
+        return True
+
     @property
     def damping(self) -> float:
         """b [N s/m]."""
@@ -118,27 +88,27 @@ class StandardWaves:
 
     def force_at_rest(self, received: Array) -> Array:
         """F_m of a leader that stands still (A,) [N]."""
-        return -sqrt(2.0 * self.impedance) * received
+        force = np.empty(received.size)
+        kernels.times(-self.force_gain, received, force)
+        return force
 
-    def leader_init(self, axes: int) -> PortState:
+    def leader_init(self, axes: int) -> Array:
         """The leader's port, which remembers nothing."""
-        return _NOTHING
+        return NOTHING
 
-    def follower_init(self, axes: int) -> PortState:
+    def follower_init(self, axes: int) -> Array:
         """The follower's port, which remembers nothing."""
-        return _NOTHING
+        return NOTHING
 
-    def leader_step(
-        self, state: PortState, v: Array, received: Array
-    ) -> tuple[PortState, Array, Array]:
+    def leader_step(self, state: Array, v: Array, received: Array) -> tuple[Array, Array, Array]:
         """Force on the leader [N] and wave to send, given its velocity [m/s]."""
         force, sent = np.empty(v.size), np.empty(v.size)
         kernels.standard_leader(self.impedance, v, received, force, sent)
         return state, force, sent
 
     def follower_step(
-        self, state: PortState, force: Array, received: Array
-    ) -> tuple[PortState, Array, Array]:
+        self, state: Array, force: Array, received: Array
+    ) -> tuple[Array, Array, Array]:
         """Desired velocity of the follower [m/s] and wave to send, given the force on it [N]."""
         desired, sent = np.empty(force.size), np.empty(force.size)
         kernels.standard_follower(self.impedance, force, received, desired, sent)
@@ -150,7 +120,7 @@ class StandardWaves:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ModifiedWaves:
+class ModifiedWaves(WaveEnergy):
     """The paper's waves (16)-(19): a gain K on the force, and a low-pass on the way forward.
 
     With w = b v_m + F_r, what the leader's port receives being F_r / K, and g the filtered w:
@@ -206,6 +176,26 @@ class ModifiedWaves:
         return cls(impedance=impedance, gain=0.5, cutoff=20.0, dt=dt)
 
     @cached_property
+    def wave_factor(self) -> float:
+        """K^2 dt / 2b: energy of a wave by its square, in a tick [J]."""
+        return 0.5 * self.gain**2 * self.dt / self.impedance
+
+    @property
+    def force_gain(self) -> float:
+        """K."""
+        return self.gain
+
+    @property
+    def speed_gain(self) -> float:
+        """K / b."""
+        return self.gain / self.impedance
+
+    @property
+    def is_passive(self) -> bool:
+        """Whether K is 1/2 or more."""
+        return self.gain >= PASSIVE_GAIN
+
+    @cached_property
     def share(self) -> float:
         """Share of the way to its input that the low-pass goes in a tick: lambda dt."""
         return min(self.cutoff * self.dt, 1.0)
@@ -217,29 +207,29 @@ class ModifiedWaves:
 
     def force_at_rest(self, received: Array) -> Array:
         """F_s of one delay ago (A,) [N] (19)."""
-        return self.gain * received
+        force = np.empty(received.size)
+        kernels.times(self.gain, received, force)
+        return force
 
-    def leader_init(self, axes: int) -> PortState:
-        """The leader's port with an empty low-pass."""
-        return PortState(memory=np.zeros(axes))
+    def leader_init(self, axes: int) -> Array:
+        """The leader's port with an empty low-pass: g / K, what it sent (A,)."""
+        return np.zeros(axes)
 
-    def follower_init(self, axes: int) -> PortState:
+    def follower_init(self, axes: int) -> Array:
         """The follower's port, which remembers nothing."""
-        return _NOTHING
+        return NOTHING
 
-    def leader_step(
-        self, state: PortState, v: Array, received: Array
-    ) -> tuple[PortState, Array, Array]:
+    def leader_step(self, state: Array, v: Array, received: Array) -> tuple[Array, Array, Array]:
         """Force on the leader [N] and wave to send (16), (19), given its velocity [m/s]."""
-        filtered, force, sent = np.empty(v.size), np.empty(v.size), np.empty(v.size)
+        force, sent = np.empty(v.size), np.empty(v.size)
         kernels.modified_leader(
-            self.gain, self.impedance, self.share, state.memory, v, received, filtered, force, sent
+            self.gain, self.impedance, self.share, state, v, received, force, sent
         )
-        return PortState(filtered), force, sent
+        return sent, force, sent
 
     def follower_step(
-        self, state: PortState, force: Array, received: Array
-    ) -> tuple[PortState, Array, Array]:
+        self, state: Array, force: Array, received: Array
+    ) -> tuple[Array, Array, Array]:
         """Desired velocity [m/s] and wave to send (17), (18), given the follower's force [N]."""
         desired, sent = np.empty(force.size), np.empty(force.size)
         kernels.modified_follower(self.gain, self.impedance, force, received, desired, sent)

@@ -1,13 +1,17 @@
 """The ports themselves, driven by given signals at both ends."""
 
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.teleop.analysis.hybrid import dissipation, hybrid_matrix
-from sinuous.teleop.link import ConstantDelay, Packet
-from sinuous.teleop.waves import Scheme
+from sinuous.teleop.link import ConstantDelay, LinkModel
+from sinuous.teleop.ports import FollowerPort, LeaderPort
+from sinuous.teleop.position_force import yielding
+from sinuous.teleop.receivers import Packets
+from sinuous.teleop.scheme import Scheme
 
 
 class PortRun(NamedTuple):
@@ -16,7 +20,7 @@ class PortRun(NamedTuple):
     Arguments:
         F_m: force on the leader [N]
         v_sd: desired velocity of the follower [m/s]
-        at_leader, at_follower: waves received; zero before the first
+        at_leader, at_follower: waves used; zero before the first
     """
 
     F_m: Array
@@ -32,21 +36,69 @@ def drive_ports(scheme: Scheme, delay: float, v: Array, F_s: Array) -> PortRun:
         scheme: of the waves
         delay: one way, the same both ways [s]
     """
-    ticks, axes = v.shape
-    out, zero = PortRun(*(np.zeros((ticks, axes)) for _ in PortRun._fields)), np.zeros(axes)
-    model = ConstantDelay(delay=delay, dt=scheme.dt)
-    forward, backward = model.open(), model.open()
-    leader, follower = scheme.leader_init(axes), scheme.follower_init(axes)
-    for k in range(ticks):
-        leader, out.F_m[k], ahead = scheme.leader_step(leader, v[k], out.at_leader[k])
-        follower, out.v_sd[k], back = scheme.follower_step(follower, F_s[k], out.at_follower[k])
-        to_follower, to_leader = (
-            forward.step(Packet(ahead, zero)),
-            backward.step(Packet(back, zero)),
+    link = ConstantDelay(delay=delay, dt=scheme.dt)
+    return drive_over(LeaderPort(scheme=scheme), FollowerPort(scheme=scheme), link, link, v, F_s)
+
+
+def drive_over(
+    leader: LeaderPort,
+    follower: FollowerPort,
+    forward: LinkModel,
+    backward: LinkModel,
+    v: Array,
+    F_s: Array,
+) -> PortRun:
+    """Feed leader velocities [m/s] and follower forces [N] (K, A) to ports over any links."""
+    channel = Channel(leader, follower, forward, backward, v.shape[1])
+    ticks = [channel.step(*both) for both in zip(v, F_s, strict=True)]
+    return PortRun(*(np.array(signal) for signal in zip(*ticks, strict=True)))
+
+
+class Channel:
+    """Both ports and the links between them, from tick to tick.
+
+    Arguments:
+        leader, follower: the ports
+        forward, backward: what connects them
+        axes: A
+    """
+
+    def __init__(
+        self,
+        leader: LeaderPort,
+        follower: FollowerPort,
+        forward: LinkModel,
+        backward: LinkModel,
+        axes: int,
+    ) -> None:
+        self._leader, self._follower = leader, follower
+        self._forward, self._backward = forward.open(0), backward.open(1)
+        self._at_leader, self._at_follower = leader.init(axes), follower.init(axes)
+        self._to_leader: Packets = ()
+        self._to_follower: Packets = ()
+        self._place = np.zeros(axes)
+
+    def step(self, v: Array, F_s: Array) -> tuple[Array, Array, Array, Array]:
+        """What a `PortRun` has for a tick.
+
+        Arguments:
+            v: of the leader (A,) [m/s]
+            F_s: on the follower (A,) [N]
+        """
+        leader, follower, nowhere = self._leader, self._follower, self._place
+        inbox = leader.listen(self._at_leader, self._to_leader)
+        wave, left = leader.use(self._at_leader, inbox)
+        if left < inf:
+            wave = yielding(wave, v, left, leader.scheme.dt)
+        self._at_leader, F_m, ahead = leader.answer(
+            self._at_leader, inbox, wave, v, nowhere, running=True
         )
-        if to_follower is not None and to_leader is not None and k + 1 < ticks:
-            out.at_follower[k + 1], out.at_leader[k + 1] = to_follower.wave, to_leader.wave
-    return out
+        heard = follower.listen(self._at_follower, self._to_follower)
+        self._at_follower, v_sd, back = follower.answer(
+            self._at_follower, heard, F_s, nowhere, running=True
+        )
+        self._to_follower, self._to_leader = self._forward.step(ahead), self._backward.step(back)
+        return F_m, v_sd, self._at_leader.wave, self._at_follower.wave
 
 
 def channel_energy(run: PortRun, v: Array, F_s: Array, dt: float) -> Array:
