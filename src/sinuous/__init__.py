@@ -42,15 +42,24 @@ if TYPE_CHECKING:
     from sinuous.summary import summarise
     from sinuous.teleop.bilateral import Bilateral
     from sinuous.teleop.boundary import BoxForce, ZoneForce
+    from sinuous.teleop.delays import NormalJitter, Steady, UniformJitter, Varying
     from sinuous.teleop.drift import DriftCorrection
     from sinuous.teleop.ends import FollowerEnd, LeaderEnd
     from sinuous.teleop.force import ErrorForce, ErrorForceAlong, Together
+    from sinuous.teleop.impaired import ImpairedLink
     from sinuous.teleop.leader import LeaderDevice
     from sinuous.teleop.ledger import Ledger
+    from sinuous.teleop.limits import Limits
     from sinuous.teleop.link import ConstantDelay
+    from sinuous.teleop.losses import BurstLoss, Duplication, Outages, RandomLoss, RandomOutages
     from sinuous.teleop.mapping import Mapping
     from sinuous.teleop.move_and_wait import MoveAndWait
     from sinuous.teleop.operators import ImpedanceOperator, Prescribed
+    from sinuous.teleop.passivity import PassivityControl
+    from sinuous.teleop.position_force import PositionForce
+    from sinuous.teleop.ramp import Ramp
+    from sinuous.teleop.receivers import Hold, Interpolated, ZeroFill
+    from sinuous.teleop.trace import Trace
     from sinuous.teleop.waves import ModifiedWaves, StandardWaves
     from sinuous.view import save_comparison, save_figures
 
@@ -58,6 +67,7 @@ _HOME = {
     "Accuracy": "sinuous.plants.sensors",
     "Bilateral": "sinuous.teleop.bilateral",
     "BoxForce": "sinuous.teleop.boundary",
+    "BurstLoss": "sinuous.teleop.losses",
     "CableLoop": "sinuous.control.cable_loop",
     "Command": "sinuous.control.report",
     "ConstantDelay": "sinuous.teleop.link",
@@ -65,21 +75,26 @@ _HOME = {
     "DampedLeastSquares": "sinuous.control.dls",
     "Disturbance": "sinuous.plants.kinematic",
     "DriftCorrection": "sinuous.teleop.drift",
+    "Duplication": "sinuous.teleop.losses",
     "ErrorForce": "sinuous.teleop.force",
     "ErrorForceAlong": "sinuous.teleop.force",
     "Fibre": "sinuous.plants.fibre",
     "FollowerEnd": "sinuous.teleop.ends",
     "GeometricIK": "sinuous.control.geometric_ik",
     "HierarchicalController": "sinuous.control.hierarchical",
+    "Hold": "sinuous.teleop.receivers",
     "IKStatus": "sinuous.control.geometric_ik",
+    "ImpairedLink": "sinuous.teleop.impaired",
     "ImpedanceOperator": "sinuous.teleop.operators",
     "InputError": "sinuous.errors",
+    "Interpolated": "sinuous.teleop.receivers",
     "JointedRobot": "sinuous.robots.jointed",
     "KinematicPlant": "sinuous.plants.kinematic",
     "LeaderDevice": "sinuous.teleop.leader",
     "LeaderEnd": "sinuous.teleop.ends",
     "Ledger": "sinuous.teleop.ledger",
     "Leg": "sinuous.scenario.path",
+    "Limits": "sinuous.teleop.limits",
     "LocalController": "sinuous.control.local",
     "MPCState": "sinuous.control.mpc",
     "Mapping": "sinuous.teleop.mapping",
@@ -88,11 +103,18 @@ _HOME = {
     "MismatchedPlant": "sinuous.plants.mismatched",
     "ModifiedWaves": "sinuous.teleop.waves",
     "MoveAndWait": "sinuous.teleop.move_and_wait",
+    "NormalJitter": "sinuous.teleop.delays",
     "OffsetFree": "sinuous.control.offset_free",
+    "Outages": "sinuous.teleop.losses",
+    "PassivityControl": "sinuous.teleop.passivity",
     "PccRobot": "sinuous.robots.pcc",
     "Pid": "sinuous.control.pid",
+    "PositionForce": "sinuous.teleop.position_force",
     "Prescribed": "sinuous.teleop.operators",
     "ProjectedTarget": "sinuous.control.projected",
+    "Ramp": "sinuous.teleop.ramp",
+    "RandomLoss": "sinuous.teleop.losses",
+    "RandomOutages": "sinuous.teleop.losses",
     "RateLimiter": "sinuous.control.geometric_rates",
     "Reach": "sinuous.reach",
     "RecordedPlant": "sinuous.plants.recorded",
@@ -107,11 +129,16 @@ _HOME = {
     "ShapeTracker": "sinuous.plants.sensors",
     "StandardWaves": "sinuous.teleop.waves",
     "Status": "sinuous.control.report",
+    "Steady": "sinuous.teleop.delays",
     "Timing": "sinuous.plants.sensors",
     "TipTracker": "sinuous.plants.sensors",
     "Together": "sinuous.teleop.force",
+    "Trace": "sinuous.teleop.trace",
     "Transmission": "sinuous.control.transmission",
+    "UniformJitter": "sinuous.teleop.delays",
+    "Varying": "sinuous.teleop.delays",
     "When": "sinuous.control.offset_free",
+    "ZeroFill": "sinuous.teleop.receivers",
     "ZoneForce": "sinuous.teleop.boundary",
     "check_mesh": "sinuous.geometry.mesh",
     "follow": "sinuous.scenario.path",
@@ -137,6 +164,7 @@ __all__ = [
     "Accuracy",
     "Bilateral",
     "BoxForce",
+    "BurstLoss",
     "CableLoop",
     "Command",
     "ConstantDelay",
@@ -144,21 +172,26 @@ __all__ = [
     "DampedLeastSquares",
     "Disturbance",
     "DriftCorrection",
+    "Duplication",
     "ErrorForce",
     "ErrorForceAlong",
     "Fibre",
     "FollowerEnd",
     "GeometricIK",
     "HierarchicalController",
+    "Hold",
     "IKStatus",
+    "ImpairedLink",
     "ImpedanceOperator",
     "InputError",
+    "Interpolated",
     "JointedRobot",
     "KinematicPlant",
     "LeaderDevice",
     "LeaderEnd",
     "Ledger",
     "Leg",
+    "Limits",
     "LocalController",
     "MPCState",
     "Mapping",
@@ -167,11 +200,18 @@ __all__ = [
     "MismatchedPlant",
     "ModifiedWaves",
     "MoveAndWait",
+    "NormalJitter",
     "OffsetFree",
+    "Outages",
+    "PassivityControl",
     "PccRobot",
     "Pid",
+    "PositionForce",
     "Prescribed",
     "ProjectedTarget",
+    "Ramp",
+    "RandomLoss",
+    "RandomOutages",
     "RateLimiter",
     "Reach",
     "RecordedPlant",
@@ -186,11 +226,16 @@ __all__ = [
     "ShapeTracker",
     "StandardWaves",
     "Status",
+    "Steady",
     "Timing",
     "TipTracker",
     "Together",
+    "Trace",
     "Transmission",
+    "UniformJitter",
+    "Varying",
     "When",
+    "ZeroFill",
     "ZoneForce",
     "check_mesh",
     "follow",

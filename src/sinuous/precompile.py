@@ -12,11 +12,18 @@ from sinuous.plants.kinematic import KinematicPlant
 from sinuous.robots.robot_file import load_jointed, load_robot
 from sinuous.teleop.bilateral import Bilateral
 from sinuous.teleop.boundary import BoxForce, ZoneForce
+from sinuous.teleop.delays import Steady
 from sinuous.teleop.drift import DriftCorrection
 from sinuous.teleop.force import ErrorForce, ErrorForceAlong, Together
+from sinuous.teleop.impaired import ImpairedLink
+from sinuous.teleop.limits import Limits
+from sinuous.teleop.losses import RandomLoss
 from sinuous.teleop.mapping import Mapping
 from sinuous.teleop.move_and_wait import MoveAndWait
 from sinuous.teleop.operators import ImpedanceOperator, Prescribed
+from sinuous.teleop.passivity import PassivityControl
+from sinuous.teleop.position_force import PositionForce
+from sinuous.teleop.receivers import Hold
 from sinuous.teleop.waves import ModifiedWaves, StandardWaves
 
 LENGTH, RADIUS = 0.4, 0.02  # of a tube that keeps a robot in reach of its wall [m]
@@ -45,7 +52,8 @@ def _by_hand() -> None:
     plane, space = Mapping.plane(1.0, float(tip[1])), Mapping.space(1.0, tip)
     box = BoxForce(low=[-1.0, -1.0], high=[1.0, 1.0])
     walls = ZoneForce(zone=zone, mapping=space, distance=2.0 * RADIUS)
-    for scheme in (StandardWaves(), ModifiedWaves.c2()):
+    bad = ImpairedLink(effects=(Steady(0.0), RandomLoss(0.5)))
+    for scheme in (StandardWaves(), ModifiedWaves.c2(), PositionForce()):
         for mapping, rest, force in (
             (plane, still[0], Together((ErrorForce(), box))),
             (space, still[1], Together((ErrorForceAlong(), walls))),
@@ -60,10 +68,16 @@ def _by_hand() -> None:
                     mapping=mapping,
                     force=force,
                     scheme=scheme,
+                    link=bad,
+                    receiver=Hold(longest=0.01),
+                    control=PassivityControl(),
+                    felt=Limits(size=1.0, slew=10.0),
+                    speed=Limits(size=1.0, slew=10.0),
                     correction=DriftCorrection(),
                 )
                 far, signals = hand.step(hand.init(tip), tip)
-                hand.step(far, tip)
+                for _ in range(8):
+                    far, signals = hand.step(far, tip)
                 state, command = loop.step(state, signals.follower.target_w)
                 plant.step(command.rates, loop.dt)
     ik.solve(tip[None])
