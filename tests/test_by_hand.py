@@ -205,7 +205,10 @@ BAD = {
     ),
     "rates": (["mpc.rate_hz=30"], ["teleop.rate", "whole multiple", "mpc.rate_hz = 50"]),
     "fast filter": (["teleop.waves.cutoff_rad_s=2000"], ["teleop.waves.cutoff", "amplify"]),
-    "unknown scheme": (["teleop.scheme=c3"], ["teleop.scheme", '"standard", "c1", "c2" or "position_force"']),
+    "unknown scheme": (
+        ["teleop.scheme=c3"],
+        ["teleop.scheme", '"standard", "c1", "c2" or "position_force"'],
+    ),
     "law for modules": (["control.law=geometric_ik"], ["robot.file", "geometric inverse"]),
     "encoders of a mismatch": (
         ["plant.encoder_step_mm=0.1", "plant.mismatch.sag_mm=1"],

@@ -7,7 +7,7 @@ from tyro.conf import Positional, UseAppendAction, arg
 
 Folder = Annotated[str, arg(metavar="DIR")]
 Paper = Literal["qin2020", "hachen2025"]
-What = Literal["mpc", "scaling", "tails", "rate", "qp", "ik", "startup"]
+What = Literal["mpc", "scaling", "tails", "rate", "qp", "ik", "link", "startup"]
 Assignments = Annotated[UseAppendAction[tuple[tuple[str, ...], ...]], arg(metavar="KEY=VALUE ...")]
 
 
@@ -104,10 +104,13 @@ class Bench:
     ik: the geometric inverse kinematics of the jointed robot beside damped least squares, Newton's
     method, cyclic coordinate descent and FABRIK.
 
+    link: every scheme of teleoperation on good and bad connections, with and without passivity
+    control, in relaxed, stiff and worst-case hands; on all cores, a quarter of an hour.
+
     startup: help, imports and the first control step of a new process.
     """
 
-    what: Positional[Annotated[What, arg(metavar="{mpc,scaling,tails,rate,qp,ik,startup}")]]
+    what: Positional[Annotated[What, arg(metavar="{mpc,scaling,tails,rate,qp,ik,link,startup}")]]
     """what to measure"""
     json: Annotated[str | None, arg(metavar="FILE")] = None
     """file for all numbers, settings, versions and solver logs"""

@@ -73,6 +73,10 @@ def _benchmark(what: What) -> "Benchmark":
             from sinuous.bench.ik import IK
 
             return IK
+        case "link":
+            from sinuous.bench.link import LINK
+
+            return LINK
         case "startup":
             from sinuous.bench.startup import STARTUP
 

@@ -29,7 +29,7 @@ ENERGIES = ("channel_j", "operator_j", "follower_j")
 """Energy taken in by each part since the start [J], see `teleop.ledger`."""
 
 FAULT = "fault"
-"""How many of the two ends hold still because of a fault."""
+"""How many of the two ends report a fault: they hold still, or ignored a packet."""
 
 
 def signal_names(axes: Sequence[str]) -> tuple[str, ...]:

@@ -1,12 +1,16 @@
 """How long packets take: effects that change the delay of every copy."""
 
 from bisect import bisect_right
+from collections.abc import Iterator
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
-from sinuous.teleop.checks import positive, zero_or_more
-from sinuous.teleop.impaired import Course, Delays
+from sinuous.teleop.checks import zero_or_more
+from sinuous.teleop.impaired import Course, Delays, chances
+
+_DRAWN = 256  # random numbers at a time
 
 
 @dataclass(frozen=True)
@@ -92,8 +96,9 @@ class UniformJitter:
 
     def open(self, rng: np.random.Generator) -> Course:
         """Its course in one run."""
+        chance, low, width = chances(rng), -self.spread, 2.0 * self.spread
         return lambda _, copies: tuple(
-            max(copy + rng.uniform(-self.spread, self.spread), 0.0) for copy in copies
+            max(copy + low + width * next(chance), 0.0) for copy in copies
         )
 
 
@@ -105,10 +110,10 @@ class NormalJitter:
 
     Arguments:
         deviation: standard deviation before it is truncated [s]
-        cut: largest departure, in deviations
+        cut: largest departure, in deviations; 0.1 or more
 
     Raises:
-        ValueError: if the deviation is negative, or the cut not positive
+        ValueError: if the deviation is negative, or the cut too small
     """
 
     deviation: float
@@ -116,15 +121,16 @@ class NormalJitter:
 
     def __post_init__(self) -> None:
         zero_or_more("deviation", self.deviation)
-        positive("cut", self.cut)
+        if not 0.1 <= self.cut < inf:
+            raise ValueError(f"cut must be 0.1 or more and finite, not {self.cut}")
 
     def open(self, rng: np.random.Generator) -> Course:
         """Its course in one run."""
 
-        def drawn() -> float:
+        def drawn() -> Iterator[float]:
             while True:
-                value = float(rng.standard_normal())
-                if abs(value) <= self.cut:
-                    return value * self.deviation
+                values = rng.standard_normal(_DRAWN)
+                yield from (self.deviation * values[np.abs(values) <= self.cut]).tolist()
 
-        return lambda _, copies: tuple(max(copy + drawn(), 0.0) for copy in copies)
+        departures = drawn()
+        return lambda _, copies: tuple(max(copy + next(departures), 0.0) for copy in copies)

@@ -1,6 +1,6 @@
 """A link as networks are: packets that are late, lost, doubled or out of order."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from heapq import heappop, heappush
 from typing import NamedTuple, Protocol
@@ -17,12 +17,21 @@ Course = Callable[[float, Delays], Delays]
 """What becomes of the copies of a packet that is sent at a time [s]."""
 
 
+_DRAWN = 256  # random numbers at a time
+
+
 class Effect(Protocol):
     """One thing that a network does to packets."""
 
     def open(self, rng: np.random.Generator) -> Course:
         """Its course in one run, with luck of its own."""
         ...
+
+
+def chances(rng: np.random.Generator) -> Iterator[float]:
+    """Numbers uniform within [0, 1), one by one; drawn many at a time, which is much faster."""
+    while True:
+        yield from rng.random(_DRAWN).tolist()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,8 +20,8 @@ class Limits:
     was used, and a hand that cannot hold more than the largest force is pushed back by the same
     channel until nobody pushes harder. A smaller wave takes less energy: the size is kept to
     whatever comes. A wave that falls more slowly than it was received takes more: under passivity
-    control the fall is as slow as the energy left allows; without, it makes energy. What the port answers the hand's own
-    motion with, `damping` times v, opposes it and comes on top.
+    control the fall is as slow as the energy left allows; without, it makes energy. What the port
+    answers the hand's own motion with, `damping` times v, opposes it and comes on top.
 
     Arguments:
         size: [N] or [m/s]

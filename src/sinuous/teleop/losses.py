@@ -6,7 +6,7 @@ from math import inf, isfinite
 import numpy as np
 
 from sinuous.teleop.checks import positive, probability, zero_or_more
-from sinuous.teleop.impaired import Course, Delays
+from sinuous.teleop.impaired import Course, Delays, chances
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,12 +69,13 @@ class BurstLoss:
 
     def open(self, rng: np.random.Generator) -> Course:
         """Its course in one run."""
-        bad = bool(rng.random() < self.badness)
+        chance = chances(rng)
+        bad = next(chance) < self.badness
 
         def course(_: float, copies: Delays) -> Delays:
             nonlocal bad
-            lost = rng.random() < (self.lost_when_bad if bad else self.lost_when_good)
-            bad = rng.random() < (1.0 - self.recovery if bad else self.worsening)
+            lost = next(chance) < (self.lost_when_bad if bad else self.lost_when_good)
+            bad = next(chance) < (1.0 - self.recovery if bad else self.worsening)
             return () if lost else copies
 
         return course
@@ -98,7 +99,8 @@ class RandomLoss:
 
     def open(self, rng: np.random.Generator) -> Course:
         """Its course in one run."""
-        return lambda _, copies: () if rng.random() < self.loss else copies
+        chance = chances(rng)
+        return lambda _, copies: () if next(chance) < self.loss else copies
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,9 +124,10 @@ class Duplication:
 
     def open(self, rng: np.random.Generator) -> Course:
         """Its course in one run."""
+        chance = chances(rng)
 
         def course(_: float, copies: Delays) -> Delays:
-            twice, later = rng.random() < self.share, self.after * rng.random()
+            twice, later = next(chance) < self.share, self.after * next(chance)
             return (*copies, *(copy + later for copy in copies)) if twice else copies
 
         return course

@@ -70,18 +70,17 @@ def most(heard: float, energy: float) -> float:
 
 def hear(inbox: Inbox, packets: Packets) -> tuple[Inbox, Packets]:
     """What is heard whatever is done with the waves, and the packets that fit, by number."""
-    good = tuple(
-        sorted((packet for packet in packets if fits(packet, inbox.wave.size)), key=_number)
-    )
-    energy = inbox.energy
+    good = tuple(packet for packet in packets if fits(packet, inbox.wave.size))
+    if len(good) > 1:
+        good = tuple(sorted(good, key=_number))
+    wave, position, number, energy, running, silent, kept, _ = inbox
     for packet in good:
         energy = most(energy, packet.energy)
-    fault = "" if len(good) == len(packets) else IGNORED
-    heard = inbox._replace(energy=energy, silent=inbox.silent + 1, fault=fault)
-    if not good or good[-1].number <= inbox.number:
-        return heard, good
-    _, position, number, _, _, running = good[-1]
-    return heard._replace(position=position, number=number, running=running, silent=0), good
+    silent, fault = silent + 1, "" if len(good) == len(packets) else IGNORED
+    if good and good[-1].number > number:
+        _, position, number, _, _, running = good[-1]
+        silent = 0
+    return Inbox(wave, position, number, energy, running, silent, kept, fault), good
 
 
 def faded(wave: Array, longest: float, silence: float) -> Array:
