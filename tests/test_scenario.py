@@ -175,7 +175,7 @@ def test_a_scenario_is_checked_when_it_is_built(full: Path) -> None:
         sn.Scenario(name="", mpc=scenario.mpc, path=scenario.path, start=np.zeros(3))
 
 
-BEYOND = ("unreachable", "watchdog", "jointed_teleop")  # whose paths lead into a wall
+BEYOND = ("unreachable", "watchdog", "jointed_teleop", "bad_link")  # whose paths lead into a wall
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)

@@ -28,7 +28,7 @@ from sinuous.bench.link_hand import ARMS, FASTEST, LEGS, SETTLED, STIFF, arm, pu
 from sinuous.bench.link_models import OUTAGES, STEPS, model
 from sinuous.bench.link_pairs import attempt, pairs
 from sinuous.bench.link_rig import connect, scheme
-from sinuous.bench.link_summary import FLOOR, failures, worst_of
+from sinuous.bench.link_summary import FLOOR, failures, number, worst_of
 from sinuous.bench.link_task import Task, work
 from sinuous.bench.link_worst import search
 from sinuous.teleop.ledger import Energies
@@ -79,7 +79,7 @@ def test_the_path_goes_where_it_should_and_no_faster_than_a_hand() -> None:
 def ages(connection: Connection, ticks: int = 6000) -> Array:
     """Age of the newest packet by tick [s]."""
     link = model(connection, 1, DT)
-    return DT * (np.arange(ticks) - Schedule.of(link, link, ticks).forward)
+    return DT * (np.arange(ticks, dtype=np.float64) - Schedule.of(link, link, ticks).forward)
 
 
 def test_connections_do_what_their_names_say() -> None:
@@ -225,7 +225,7 @@ def test_the_worst_motion_takes_more_than_an_arm(contact: Contact) -> None:
 def test_a_minute_leaves_no_drift_where_it_is_corrected() -> None:
     lossy = Connection(delay=0.05, jitter=0.0, loss=0.1)
     rows = drift(SchemeName.C2, lossy, model(lossy, 2, DT), DT, 16.0)
-    kinds = {row["kind"]: row["drift_m"] for row in rows}
+    kinds = {row["kind"]: number(row, "drift_m") for row in rows}
     assert kinds["control, correction"] < 1e-5 < kinds["none"]
 
 

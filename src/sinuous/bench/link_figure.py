@@ -70,7 +70,7 @@ def _trade(axes: Axes, rows: Sequence[Row], key: str, scale: float) -> None:
         )
     axes.axhline(-FLOOR, color=GREY, linewidth=0.9, linestyle=(0, (3, 2)), zorder=1)
     axes.annotate(
-        r"$F_{max} v_{max} dt$", (0.02, -FLOOR), (0, 3), textcoords="offset points",
+        r"$F_{max} v_{max} dt$", (0.98, -FLOOR), (0, 3), ha="right", textcoords="offset points",
         xycoords=axes.get_yaxis_transform(), color=SLATE, fontsize=9,
     )  # fmt: skip
     axes.set_yscale("log")

@@ -45,7 +45,6 @@ def searches(found: Found) -> Table:
                     "arms": sum(number(row, "arm_ledger_min_j") < FLOOR for row in own),
                     "arm_ledger_min_j": arm["arm_ledger_min_j"],
                     "arm": f"{arm['arm_stiffness_n_m']:.0f}, {arm['arm_damping_n_s_m']:.1f}",
-                    "arm_on": connection(arm),
                 }
             )
     return Table(
@@ -62,7 +61,6 @@ def searches(found: Found) -> Table:
             Column(key="arms", title="arms"),
             Column(key="arm_ledger_min_j", title="ledger [J]", form=".3f"),
             Column(key="arm", title="N/m, N s/m"),
-            Column(key="arm_on", title="on"),
         ),
         rows=rows,
     )
