@@ -48,6 +48,8 @@ PARTS: dict[str, tuple[tuple[Any, str], ...]] = {
         (energy_kernels, "kept"),
         (PassivityControl, "surplus"),
         (Port, "spend"),
+        (Port, "init"),
+        (Port, "asleep"),
     ),
     "compensation": (
         (DriftCorrection, "step"),
@@ -205,7 +207,10 @@ CHECKS: tuple[Callable[[], None], ...] = (
     partial(
         test_position_force.test_control_costs_little_where_the_channel_is_passive_by_itself,
         "relaxed",
+        0.0,
     ),
+    partial(test_position_force.test_a_loan_is_given_once, 1e-3),
+    test_passivity.test_a_pause_neither_takes_a_loan_nor_gives_it_again,
 )
 
 

@@ -89,7 +89,7 @@ def test_no_signal_on_no_link_takes_energy_out(
     v, F_s = 0.3 * signals[:, :axes], force * signals[:, axes:]
     pair = ports(scheme, receiver, PassivityControl(capacity=capacity), limits)
     energy = channel_energy(drive_over(*pair, forward, backward, v, F_s), v, F_s, DT)
-    assert np.min(energy) >= -ROUNDING * max(np.max(np.abs(energy)), 1.0)
+    assert np.min(energy) >= -scheme.loan - ROUNDING * max(np.max(np.abs(energy)), 1.0)
 
 
 @settings(max_examples=100)
@@ -108,7 +108,7 @@ def test_nor_do_robbers(
 ) -> None:  # fmt: skip
     pair = ports(scheme, receiver, PassivityControl(capacity=capacity), limits)
     energy = robbed(pair, forward, backward, seed=seed, axes=2)
-    assert np.min(energy) >= -ROUNDING * max(np.max(np.abs(energy)), 1.0)
+    assert np.min(energy) >= -scheme.loan - ROUNDING * max(np.max(np.abs(energy)), 1.0)
 
 
 def least(pair: Ports, link: LinkModel, against: Signals) -> float:
@@ -128,7 +128,7 @@ def test_what_is_worst_without_control_takes_nothing_with_it(name: str, link: st
     assert least(naive, BAD[link], worst) <= 0.999 * worst.energy
     for capacity in (0.0, CONTROL.capacity, np.inf):
         kept = ports(SCHEMES[name], receiver, PassivityControl(capacity=capacity))
-        assert least(kept, BAD[link], worst) >= -ROUNDING
+        assert least(kept, BAD[link], worst) >= -SCHEMES[name].loan - ROUNDING
 
 
 @pytest.mark.parametrize("name", SCHEMES)
@@ -208,7 +208,7 @@ def test_each_port_keeps_to_both_of_its_rules(
         taken_s -= DT * float(F_s @ v_sd)
         to_follower, to_leader = ahead.step(packet_m), back.step(packet_s)
         size = max(m.sent, s.sent, 1.0)
-        for memory, other, taken in ((m, s, taken_m), (s, m, taken_s)):
+        for memory, other, taken in ((m, s, taken_m + scheme.loan), (s, m, taken_s)):
             assert memory.used <= memory.inbox.energy + ROUNDING * size
             assert memory.inbox.energy <= other.sent
             assert taken >= memory.sent - memory.used - ROUNDING * size
@@ -255,6 +255,17 @@ def test_what_is_above_the_capacity_goes_back_to_the_leader() -> None:
     assert m.inbox.energy - m.used == pytest.approx(capacity)
 
 
+def test_a_pause_neither_takes_a_loan_nor_gives_it_again() -> None:
+    """And what is left of before is not used after."""
+    loan, nowhere = 1e-3, np.zeros(1)
+    port, _ = ports(PositionForce(loan=loan), Hold(), CONTROL)
+    fresh = port.init(1)
+    for used, heard, left in ((-loan, 0.0, loan), (0.0, 0.0, 0.0), (0.0, 1.0, loan)):
+        inbox = fresh.inbox._replace(energy=heard)
+        memory, _ = port.asleep(fresh._replace(used=used), inbox, nowhere, False)
+        assert port.spare(memory) == pytest.approx(left)
+
+
 # --- both ends, with hands, walls, drift and limits -------------------------------------------
 
 HANDS = {
@@ -289,7 +300,7 @@ def connected(name: str, link: LinkModel, hand: str, **parts: Any) -> Bilateral[
     ],
 )
 @pytest.mark.parametrize("name", SCHEMES)
-def test_with_hands_walls_and_correction_the_ledger_stays_above_zero(
+def test_with_hands_walls_and_correction_the_ledger_stays_above_its_floor(
     name: str, link: str, hand: str
 ) -> None:
     r = run(
@@ -300,7 +311,7 @@ def test_with_hands_walls_and_correction_the_ledger_stays_above_zero(
         ),
         5.0,
     )  # fmt: skip
-    assert r.ledger.least.channel >= -ROUNDING
+    assert r.ledger.least.channel >= -SCHEMES[name].loan - ROUNDING
     assert r.ledger.energies.channel > 1e-3
     assert np.max(np.abs(r.X_sd)) < 0.25
     assert np.max(np.abs(r.X_sd - r.X)) > 1e-3  # something has happened

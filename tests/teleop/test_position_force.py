@@ -9,8 +9,10 @@ from sinuous.arrays import Array
 from sinuous.teleop import energy_kernels
 from sinuous.teleop.analysis.ports import channel_energy, drive_over, drive_ports
 from sinuous.teleop.bilateral import Bilateral
+from sinuous.teleop.impaired import ImpairedLink
 from sinuous.teleop.leader import LeaderDevice, Load
 from sinuous.teleop.link import ConstantDelay
+from sinuous.teleop.losses import RandomLoss
 from sinuous.teleop.operators import ImpedanceOperator, Prescribed
 from sinuous.teleop.passivity import PassivityControl
 from sinuous.teleop.position_force import PositionForce, damped, yielding
@@ -145,18 +147,30 @@ def test_two_channels_with_a_delay_make_energy_and_with_control_none() -> None:
         free = channel_energy(drive_ports(SCHEME, delay, v, F_s), v, F_s, DT)
         held = channel_energy(drive_over(*kept, link, link, v, F_s), v, F_s, DT)
         assert free[-1] < -0.01
-        assert np.min(held) >= -ROUNDING
+        assert np.min(held) >= -SCHEME.loan - ROUNDING
 
 
 def test_a_force_that_pushes_the_hand_back_is_felt_when_its_energy_has_come() -> None:
     """Of a follower that is pushed back, through a hand that gives way."""
-    scheme, link = PositionForce(local_damping=0.0), ConstantDelay(delay=0.01)
+    scheme, link = PositionForce(local_damping=0.0, loan=0.0), ConstantDelay(delay=0.01)
     v, F_s = np.full((2000, 1), -0.1), np.full((2000, 1), 1.0)
     kept = ports(scheme, Hold(), PassivityControl())
     got = drive_over(*kept, link, link, v, F_s)
     assert np.all(got.F_m[:20] < 0.5)
     assert got.F_m[-1, 0] > 0.95
     assert np.min(channel_energy(got, v, F_s, DT)) >= -ROUNDING
+
+
+@pytest.mark.parametrize("loan", [0.0, 1e-3, 5e-3])
+def test_a_loan_is_given_once(loan: float) -> None:
+    """To a hand that gives way to a force again and again, from which nothing ever comes."""
+    scheme, link = PositionForce(local_damping=0.0, loan=loan), ConstantDelay(delay=0.01)
+    v, F_s = np.full((2000, 1), -0.1), np.full((2000, 1), 1.0)
+    to_nobody = ImpairedLink(effects=(RandomLoss(1.0),))
+    kept = ports(scheme, Hold(), PassivityControl())
+    energy = channel_energy(drive_over(*kept, to_nobody, link, v, F_s), v, F_s, DT)
+    assert np.min(energy) >= -loan - ROUNDING
+    assert energy[-1] == pytest.approx(-loan, rel=0.02, abs=ROUNDING)
 
 
 def teleoperated(hand: ImpedanceOperator, delay: float, control: PassivityControl | None) -> Run:
@@ -173,9 +187,12 @@ HANDS = {
 COST = 0.05  # of control, where none is needed
 
 
+@pytest.mark.parametrize("delay", [0.0, 0.2])
 @pytest.mark.parametrize("hand", HANDS)
-def test_control_costs_little_where_the_channel_is_passive_by_itself(hand: str) -> None:
-    free, kept = (teleoperated(HANDS[hand], 0.0, c) for c in (None, PassivityControl()))
+def test_control_costs_little_where_the_channel_is_passive_by_itself(
+    hand: str, delay: float
+) -> None:
+    free, kept = (teleoperated(HANDS[hand], delay, c) for c in (None, PassivityControl()))
     assert free.ledger.least.channel >= 0.0
     assert np.max(np.abs(free.F_s)) > 0.3  # in contact
     for one, other in ((free.F_m - free.F_s, kept.F_m - kept.F_s),
@@ -222,7 +239,7 @@ def test_it_tracks_better_than_waves_and_presses_as_hard_on_a_wall() -> None:
         assert r.F_s[-1, 0] > 0.3
 
 
-@pytest.mark.parametrize(("field", "value"), [("local_damping", -1.0), ("dt", 0.0)])
+@pytest.mark.parametrize(("field", "value"), [("local_damping", -1.0), ("loan", -1.0), ("dt", 0.0)])
 def test_numbers_that_make_no_sense(field: str, value: float) -> None:
     with pytest.raises(ValueError, match=field):
         PositionForce(**{field: value})

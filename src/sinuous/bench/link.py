@@ -45,7 +45,8 @@ NOTES = (
     "run, at rest; peak: the largest |F_m|.",
     '"active": cells whose ledger fell below -F_max v_max dt = '
     f'-{LARGEST:g} N x {link_hand.FASTEST:g} m/s x 1 ms = {1e3 * FLOOR:g} mJ. "unbounded": what '
-    "left 1 m, or grew while the hand was at rest; errors are of the cells that are bounded.",
+    "left 1 m, or moved more and more, from quarter to quarter of 40 s, with the hand at rest; "
+    "errors are of the cells that are bounded.",
     "Control: passivity control at both ports, correction of drift, force from afar capped at "
     f"{LARGEST:g} N. Without: the newest wave is repeated until a newer one comes.",
     "Worst case: the motion with the least eigenvalue of the channel's energy, and the passive arm "

@@ -12,7 +12,8 @@ from sinuous.teleop.bilateral import Bilateral, Signals
 from sinuous.teleop.ledger import Energies, Ledger
 
 FAR = 1.0  # whatever goes that far is unbounded: the hand goes 0.03 m [m]
-GROWTH, TREMBLE = 1.2, 1e-3  # so is what at rest grows by more than that, above 1 mm [m]
+PARTS, GROWTH = 4, 1.05  # so is what grows by more than that from part to part of the time at rest,
+TREMBLE = 1e-3  # and ends above that [m]
 LOOK = 10  # whether it did is looked at every so many ticks
 AT_THE_END = 0.1  # drift is averaged over that [s]
 
@@ -96,7 +97,7 @@ def judge(trace: Trace, dt: float, delay: float) -> Row:
     apart = np.linalg.norm(trace.X_sd[-last:] - trace.X[-last:], axis=1)
     return {
         "ledger_min_j": trace.least.channel,
-        "unbounded": is_unbounded(trace, dt),
+        "unbounded": not trace.complete,
         "drift_m": float(np.mean(apart)),
         "tracking_rms_m": _rms(tracking),
         "force_rms_n": _rms(force),
@@ -106,16 +107,24 @@ def judge(trace: Trace, dt: float, delay: float) -> Row:
     }
 
 
+def is_restless(trace: Trace, dt: float) -> bool:
+    """Whether something still moves while the hand is at rest, and has gone nowhere too far."""
+    return trace.complete and _swings(trace, dt)[-1] > TREMBLE
+
+
 def is_unbounded(trace: Trace, dt: float) -> bool:
-    """Whether something went too far, or what moves while the hand is at rest grows."""
-    rest = round(SETTLED / dt)
-    if not trace.complete or rest >= len(trace.X):
-        return not trace.complete
-    middle = (rest + len(trace.X)) // 2
-    return any(
-        _swing(x[middle:]) > max(TREMBLE, GROWTH * _swing(x[rest:middle]))
-        for x in (trace.X, trace.X_sd)
-    )
+    """Whether something went too far, or moves more and more while the hand is at rest."""
+    if not trace.complete:
+        return True
+    swings = _swings(trace, dt)
+    return swings[-1] > TREMBLE and bool(np.all(swings[1:] > GROWTH * swings[:-1]))
+
+
+def _swings(trace: Trace, dt: float) -> Array:
+    """How far either end moves in each part of the time at rest (PARTS,) [m]."""
+    rest = min(round(SETTLED / dt), len(trace.X) - PARTS)
+    parts = np.array_split(np.hstack([trace.X[rest:], trace.X_sd[rest:]]), PARTS)
+    return np.array([_swing(part) for part in parts])
 
 
 def _swing(x: Array) -> float:

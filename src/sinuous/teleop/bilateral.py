@@ -181,8 +181,8 @@ class Bilateral(Generic[O]):
         """One tick, given the follower's measured tip (3,) [m]; never raises for bad numbers."""
         leader, follower, forward, backward, to_leader, to_follower = state
         time = leader.tick * self.leader.scheme.dt
-        leader, at_leader, ahead = self.leader.step(leader, to_leader or ())
-        follower, at_follower, back = self.follower.step(follower, tip_w, to_follower or ())
+        leader, at_leader, ahead = self.leader.step(leader, to_leader)
+        follower, at_follower, back = self.follower.step(follower, tip_w, to_follower)
         after = BilateralState(
             leader, follower, forward, backward, backward.step(back), forward.step(ahead)
         )

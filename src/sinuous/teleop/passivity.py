@@ -37,10 +37,13 @@ what counts. `Ramp` lets an end join by a transformer, with the same power on bo
 that pauses or rests uses nothing and sends nothing. `DriftCorrection` pays for what it takes with
 what the port has dissipated, which (2) leaves out, or counts it as used.
 
-The ledger sees zero rather than -F_max v_max dt, one tick of the largest power, because neither
-port waits for what a tick has taken: the follower's knows force and velocity before the tick, and
-the leader's answers with a law of force and velocity that holds to (1) whatever the velocity of the
-tick will be.
+*A loan.* A leader's port may start with its `used` below zero by a fixed sum, once and for all: E
+then never falls below minus this sum, as that of a store that was full at the start.
+
+But for a loan the ledger sees zero rather than -F_max v_max dt, one tick of the largest power,
+because neither port waits for what a tick has taken: the follower's knows force and velocity before
+the tick, and the leader's answers with a law of force and velocity that holds to (1) whatever the
+velocity of the tick will be.
 
 Sources: Niemeyer and Slotine, Telemanipulation with time delays, Int. J. Robotics Research 23
 (2004); Ryu, Artigas and Preusche, A passive bilateral control scheme for a teleoperator with
@@ -139,6 +142,7 @@ class WaveEnergy:
     """
 
     yields = False
+    loan = 0.0
 
     @cached_property
     def wave_factor(self) -> float:

@@ -27,7 +27,8 @@ class PortMemory(NamedTuple):
         scheme: what the scheme remembers
         inbox: what was heard
         wave: that was used last (A,)
-        sent, used: energy so far [J]; zero without passivity control
+        sent, used: energy so far [J]; zero without passivity control. Used starts below zero by the
+            loan that a scheme gives
     """
 
     number: int
@@ -87,8 +88,12 @@ class Port:
     ) -> tuple[PortMemory, Packet]:
         """The same while the end pauses: what is left of before is not used after."""
         memory, packet = self.idle(memory, inbox, position, running)
-        used = max(memory.used, inbox.energy)
+        used = max(memory.used, inbox.energy - self._loan)
         return memory._replace(scheme=self._init(position.size), used=used), packet
+
+    @property
+    def _loan(self) -> float:
+        return 0.0
 
     def _init(self, axes: int) -> Array:
         raise NotImplementedError
@@ -96,12 +101,16 @@ class Port:
     def init(self, axes: int, *, running: bool = True) -> PortMemory:
         """The port with nothing in it, and whether the other end takes part from the start."""
         inbox = empty(axes, running=running)
-        return PortMemory(0, self._init(axes), inbox, np.zeros(axes), 0.0, 0.0)
+        return PortMemory(0, self._init(axes), inbox, np.zeros(axes), 0.0, -self._loan)
 
 
 @dataclass(frozen=True, kw_only=True)
 class LeaderPort(Port):
     """Takes a velocity and gives a force."""
+
+    @property
+    def _loan(self) -> float:
+        return 0.0 if self.control is None else self.scheme.loan
 
     def _init(self, axes: int) -> Array:
         return self.scheme.leader_init(axes)

@@ -23,6 +23,10 @@ Then - F_m . v_m dt <= h a <= a - a^2 / (4 spare) <= spare. A hand that presses 
 the force; one that gives way feels a damper of h, as an impedance has, but never a pull. Nothing
 left is a force that stops the hand from pressing on, and does not push it back.
 
+What the wall gives back is heard of one delay after the hand has felt it, and on a clean link a
+relaxed hand would lose a quarter of the force to that. A loan bridges it: the ledger may fall to
+minus this sum, which is less than a third of what 10 N and 0.25 m/s move in a tick of 1 ms.
+
 The local damper B puts energy in while the hand moves: without any the follower could not set out
 against a force before the force has been felt.
 """
@@ -44,17 +48,20 @@ class PositionForce:
 
     Arguments:
         local_damping: B, of the leader's own motion in the force it feels [N s/m]
+        loan: energy that the leader's port may give out before it has heard of any [J]
         dt: time of a tick [s]
 
     Raises:
-        ValueError: if the damping is negative, or dt not positive
+        ValueError: if damping or loan is negative, or dt not positive
     """
 
     local_damping: float = 10.0
+    loan: float = 0.75e-3
     dt: float = 1e-3
 
     def __post_init__(self) -> None:
         zero_or_more("local_damping", self.local_damping)
+        zero_or_more("loan", self.loan)
         positive("dt", self.dt)
 
     @property

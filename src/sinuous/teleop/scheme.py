@@ -79,6 +79,11 @@ class Scheme(Protocol):
         """
         ...
 
+    @property
+    def loan(self) -> float:
+        """Energy that the leader's port may give out before it has heard of any [J]."""
+        ...
+
     def leader_use(self, received: Array, heard: float, used: float) -> Array:
         """What of a wave the leader's port may use (A,), by (1) of `passivity`.
 

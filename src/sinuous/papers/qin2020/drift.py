@@ -54,7 +54,7 @@ def _clamped(state: BilateralState[Any], time: float) -> BilateralState[Any]:
 
 def _lost(state: BilateralState[Any], time: float) -> BilateralState[Any]:
     """Half a second in which nothing arrives at the follower."""
-    return state._replace(to_follower=None) if LOST[0] <= time < LOST[1] else state
+    return state._replace(to_follower=()) if LOST[0] <= time < LOST[1] else state
 
 
 CASES: dict[str, tuple[Edit, DriftCorrection | None]] = {
