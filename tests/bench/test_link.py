@@ -11,7 +11,7 @@ from sinuous.bench import link_arms, link_cost, link_hand, link_task
 from sinuous.bench.link_arms import worst_arm
 from sinuous.bench.link_cost import cost
 from sinuous.bench.link_drift import drift
-from sinuous.bench.link_drive import Trace, drive, is_restless, is_unbounded, judge
+from sinuous.bench.link_drive import Trace, drive, is_unbounded, judge
 from sinuous.bench.link_evolve import evolve
 from sinuous.bench.link_follower import place
 from sinuous.bench.link_grid import (
@@ -24,7 +24,7 @@ from sinuous.bench.link_grid import (
     SchemeName,
     Trouble,
 )
-from sinuous.bench.link_hand import ARMS, FASTEST, LEGS, SETTLED, STIFF, arm, puppet
+from sinuous.bench.link_hand import ARMS, FASTEST, LEGS, RELAXED, SETTLED, STIFF, arm, puppet
 from sinuous.bench.link_models import OUTAGES, STEPS, model
 from sinuous.bench.link_pairs import attempt, pairs
 from sinuous.bench.link_rig import connect, scheme
@@ -126,12 +126,21 @@ def test_what_grows_at_rest_is_unbounded() -> None:
     assert not is_unbounded(trace(dying), DT)
     assert not is_unbounded(trace(swing), DT)
     assert not is_unbounded(trace(1e-3 * growing), DT)  # less than a tremble
-    assert [is_restless(trace(x), DT) for x in (growing, swing, 0.01 * swing)] == [
-        True,
-        True,
-        False,
-    ]
     assert is_unbounded(trace(0.0 * t, complete=False), DT)
+
+
+def test_what_still_moves_is_watched_until_it_rests() -> None:
+    where, late = place(Contact.FREE, DT), ConstantDelay(delay=0.7)
+    slow, fast = (
+        connect(where, scheme(name, DT), arm(RELAXED, 1), late, control=True, correction=True)
+        for name in (SchemeName.STANDARD, SchemeName.C2)
+    )
+    watched, rested = (drive(both, place(Contact.FREE, DT).follower, where.tip_w, 9.0, longest=40.0)
+                       for both in (slow, fast))  # fmt: skip
+    assert 15.0 < DT * len(watched.X) < 40.0
+    assert 9.0 <= DT * len(rested.X) < 15.0
+    assert not is_unbounded(watched, DT)
+    assert watched.complete
 
 
 def test_errors_are_by_one_delay_before() -> None:
@@ -141,7 +150,7 @@ def test_errors_are_by_one_delay_before() -> None:
         X=np.sin(t), V=t, F_m=np.cos(t - 0.05), X_sd=late + 0.01, V_sd=t, F_s=force,
         least=Energies(-1.0, -2.0, -3.0), energy=t[:, 0], complete=True,
     )  # fmt: skip
-    row = judge(seen, DT, 0.05)
+    row = judge(seen, DT, 0.05, 3.0)
     assert row["tracking_rms_m"] == pytest.approx(0.01)
     assert row["force_rms_n"] == pytest.approx(0.0, abs=1e-12)
     assert row["peak_force_n"] == pytest.approx(1.0, abs=1e-3)

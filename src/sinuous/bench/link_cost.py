@@ -52,7 +52,7 @@ def _errors(
         where, scheme(name, dt), arm(ARMS[hand], 1), link, control=control, correction=False
     )
     trace = drive(both, where.follower, where.tip_w, DURATION)
-    return judge(trace, dt, connection.delay)
+    return judge(trace, dt, connection.delay, DURATION)
 
 
 def _change(with_: Row, without: Row, key: str) -> float:

@@ -14,7 +14,7 @@ from sinuous.teleop.ledger import Energies, Ledger
 FAR = 1.0  # whatever goes that far is unbounded: the hand goes 0.03 m [m]
 PARTS, GROWTH = 4, 1.05  # so is what grows by more than that from part to part of the time at rest,
 TREMBLE = 1e-3  # and ends above that [m]
-LOOK = 10  # whether it did is looked at every so many ticks
+WATCH = 2.5  # what moves in so long a time is not at rest yet [s]
 AT_THE_END = 0.1  # drift is averaged over that [s]
 
 
@@ -54,18 +54,24 @@ def drive(
     tip_w: Array,
     duration: float,
     *,
+    longest: float = 0.0,
     far: float = FAR,
 ) -> Trace:
-    """Run both ends for a duration [s], or until something goes too far [m]."""
+    """Run both ends for a duration [s], or until something goes too far [m].
+
+    Arguments:
+        longest: for how long it goes on while something still moves [s]
+    """
     state, ledger, seen = bilateral.init(tip_w), Ledger(bilateral.dt), list[Signals]()
+    ticks, most, chunk = (round(t / bilateral.dt) for t in (duration, longest, WATCH))
     complete = True
     with no_garbage_collection():
-        for k in range(round(duration / bilateral.dt)):
-            state, signals = bilateral.step(state, tip_w)
-            tip_w = follower.step(signals.follower.target_w)
-            ledger.observe(signals)
-            seen.append(signals)
-            if k % LOOK == 0:
+        while complete and (len(seen) < ticks or (len(seen) < most and _moves(seen[-chunk:]))):
+            for _ in range(min(chunk, ticks - len(seen)) if len(seen) < ticks else chunk):
+                state, signals = bilateral.step(state, tip_w)
+                tip_w = follower.step(signals.follower.target_w)
+                ledger.observe(signals)
+                seen.append(signals)
                 complete = max(_size(signals.leader.X), _size(signals.follower.X_sd)) < far
                 if not complete:
                     break
@@ -83,21 +89,22 @@ def drive(
     )
 
 
-def judge(trace: Trace, dt: float, delay: float) -> Row:
+def judge(trace: Trace, dt: float, delay: float, duration: float) -> Row:
     """What a row says.
 
     Arguments:
         dt: time of a tick [s]
         delay: one way, on average [s]
+        duration: for how long errors are looked at [s]; energy and motion are for all of it
     """
-    late = max(round(delay / dt), 1)
-    last = round(AT_THE_END / dt)
-    tracking = trace.X_sd[late:] - trace.X[:-late]
-    force = trace.F_m[late:] - trace.F_s[:-late]
-    apart = np.linalg.norm(trace.X_sd[-last:] - trace.X[-last:], axis=1)
+    late, last, end = max(round(delay / dt), 1), round(AT_THE_END / dt), round(duration / dt)
+    X, X_sd, F_m, F_s = (x[:end] for x in (trace.X, trace.X_sd, trace.F_m, trace.F_s))
+    tracking = X_sd[late:] - X[:-late]
+    force = F_m[late:] - F_s[:-late]
+    apart = np.linalg.norm(X_sd[-last:] - X[-last:], axis=1)
     return {
         "ledger_min_j": trace.least.channel,
-        "unbounded": not trace.complete,
+        "unbounded": is_unbounded(trace, dt),
         "drift_m": float(np.mean(apart)),
         "tracking_rms_m": _rms(tracking),
         "force_rms_n": _rms(force),
@@ -107,24 +114,22 @@ def judge(trace: Trace, dt: float, delay: float) -> Row:
     }
 
 
-def is_restless(trace: Trace, dt: float) -> bool:
-    """Whether something still moves while the hand is at rest, and has gone nowhere too far."""
-    return trace.complete and _swings(trace, dt)[-1] > TREMBLE
-
-
 def is_unbounded(trace: Trace, dt: float) -> bool:
     """Whether something went too far, or moves more and more while the hand is at rest."""
     if not trace.complete:
         return True
-    swings = _swings(trace, dt)
+    rest = round(SETTLED / dt)
+    if len(trace.X) < rest + PARTS:
+        return False
+    parts = np.array_split(np.hstack([trace.X[rest:], trace.X_sd[rest:]]), PARTS)
+    swings = np.array([_swing(part) for part in parts])
     return swings[-1] > TREMBLE and bool(np.all(swings[1:] > GROWTH * swings[:-1]))
 
 
-def _swings(trace: Trace, dt: float) -> Array:
-    """How far either end moves in each part of the time at rest (PARTS,) [m]."""
-    rest = min(round(SETTLED / dt), len(trace.X) - PARTS)
-    parts = np.array_split(np.hstack([trace.X[rest:], trace.X_sd[rest:]]), PARTS)
-    return np.array([_swing(part) for part in parts])
+def _moves(last: list[Signals]) -> bool:
+    """Whether either end has moved in the last ticks."""
+    both = np.hstack([[s.leader.X for s in last], [s.follower.X_sd for s in last]])
+    return _swing(both) > TREMBLE
 
 
 def _swing(x: Array) -> float:

@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from sinuous.bench.link_drive import Trace, drive, is_restless, is_unbounded, judge
+from sinuous.bench.link_drive import Trace, drive, judge
 from sinuous.bench.link_follower import Place, place
 from sinuous.bench.link_grid import Cell, SchemeName
+from sinuous.bench.link_hand import DURATION
 from sinuous.bench.link_summary import LARGEST, worst_of
 from sinuous.bench.result import Row
 from sinuous.teleop.bilateral import Bilateral
@@ -20,7 +21,7 @@ from sinuous.teleop.receivers import Hold
 from sinuous.teleop.scheme import Scheme
 from sinuous.teleop.waves import ModifiedWaves, StandardWaves
 
-LONGER = 46.0  # how long what does not come to rest is watched [s]
+LONGEST = 46.0  # how long what does not come to rest is watched [s]
 CAP = Limits(size=LARGEST)  # of the force from afar, under passivity control
 IMPEDANCE = 10.0  # b of all schemes of waves [N s/m]
 
@@ -84,11 +85,7 @@ def row(
     found = list[Row]()
     for operator in operators:
         trace = _run(cell, operator, link, dt, duration)
-        judged = judge(trace, dt, cell.connection.delay)
-        if is_restless(trace, dt):  # or only slow, after a long delay
-            longer = _run(cell, operator, link, dt, LONGER)
-            judged = {**judged, "unbounded": is_unbounded(longer, dt)}
-        found.append(judged)
+        found.append(judge(trace, dt, cell.connection.delay, duration))
     return {**about(cell), **worst_of(found)}
 
 
@@ -96,7 +93,13 @@ def _run(cell: Cell, operator: Operator[Any], link: LinkModel, dt: float, durati
     where = place(cell.contact, dt)
     own = scheme(cell.scheme, dt)
     both = connect(where, own, operator, link, control=cell.control, correction=cell.control)
-    return drive(both, where.follower, where.tip_w, duration)
+    return drive(
+        both,
+        where.follower,
+        where.tip_w,
+        duration,
+        longest=LONGEST if duration >= DURATION else 0.0,
+    )
 
 
 def about(cell: Cell) -> Row:
