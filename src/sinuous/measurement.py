@@ -8,7 +8,8 @@ from sinuous.arrays import Array
 
 # What a measurement says nothing about, shared by all of them.
 NOWHERE, NO_COVARIANCE, AT_THE_TIP = np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(3)
-for _constant in (NOWHERE, NO_COVARIANCE, AT_THE_TIP):
+NO_TENSIONS = np.zeros(0)
+for _constant in (NOWHERE, NO_COVARIANCE, AT_THE_TIP, NO_TENSIONS):
     _constant.setflags(write=False)
 
 
@@ -23,6 +24,7 @@ class Measurement:
         covariance: of each of the points (S, 3, 3) [m^2]; (0, 3, 3) if it is not known
         coil: where `tip` is measured, in the frame of the tip (3,) [m]
         age: time since `tip` and `points` were taken [s]
+        tensions: of the cables (C,) [N], in the order of the actuators; (0,) if not measured
     """
 
     tip: Array
@@ -31,6 +33,7 @@ class Measurement:
     covariance: Array = field(default_factory=lambda: NO_COVARIANCE)
     coil: Array = field(default_factory=lambda: AT_THE_TIP)
     age: float = 0.0
+    tensions: Array = field(default_factory=lambda: NO_TENSIONS)
 
     @property
     def has_shape(self) -> bool:

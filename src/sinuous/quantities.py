@@ -52,6 +52,11 @@ class Quantity(Enum):
     STIFFNESS = "stiffness"
     IMPEDANCE = "damping"
     MASS = "mass"
+    ROTARY_DAMPING = "damping of turning"
+    INERTIA = "moment of inertia"
+    MODULUS = "modulus of elasticity"
+    DENSITY = "density"
+    ACCELERATION = "acceleration"
 
     @property
     def units(self) -> dict[str, Unit]:
@@ -76,6 +81,11 @@ _UNITS: dict[Quantity, dict[str, Unit]] = {
     Quantity.STIFFNESS: {"n_m": _SI, "n_mm": Unit(multiply=1000.0)},
     Quantity.IMPEDANCE: {"n_s_m": _SI},
     Quantity.MASS: {"kg": _SI, "g": _MILLI},
+    Quantity.ROTARY_DAMPING: {"n_m_s_rad": _SI},
+    Quantity.INERTIA: {"kg_m2": _SI, "g_cm2": Unit(divide=1e7)},
+    Quantity.MODULUS: {"gpa": Unit(multiply=1e9), "mpa": Unit(multiply=1e6), "pa": _SI},
+    Quantity.DENSITY: {"kg_m3": _SI, "g_cm3": Unit(multiply=1000.0)},
+    Quantity.ACCELERATION: {"m_s2": _SI},
 }
 
 Length = Annotated[float, Quantity.LENGTH]
@@ -90,6 +100,11 @@ Force = Annotated[float, Quantity.FORCE]
 Stiffness = Annotated[float, Quantity.STIFFNESS]
 Impedance = Annotated[float, Quantity.IMPEDANCE]
 Mass = Annotated[float, Quantity.MASS]
+RotaryDamping = Annotated[float, Quantity.ROTARY_DAMPING]
+Inertia = Annotated[float, Quantity.INERTIA]
+Modulus = Annotated[float, Quantity.MODULUS]
+Density = Annotated[float, Quantity.DENSITY]
+Acceleration = Annotated[float, Quantity.ACCELERATION]
 
 
 def split_key(key: str) -> tuple[str, Quantity | None]:

@@ -7,7 +7,7 @@ from tyro.conf import Positional, UseAppendAction, arg
 
 Folder = Annotated[str, arg(metavar="DIR")]
 Paper = Literal["qin2020", "hachen2025"]
-What = Literal["mpc", "scaling", "tails", "rate", "qp", "ik", "link", "startup"]
+What = Literal["mpc", "scaling", "tails", "rate", "qp", "ik", "link", "rod", "startup"]
 Assignments = Annotated[UseAppendAction[tuple[tuple[str, ...], ...]], arg(metavar="KEY=VALUE ...")]
 
 
@@ -49,6 +49,19 @@ class Check:
     """a place for the tip in the mesh's frame, in millimetres"""
     set: Assignments = ()
     """change fields of a scenario first"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Export:
+    """Write a robot as a model for another program: MuJoCo, whose viewer opens it.
+
+    The model is straight and taut, and its inputs are changes of cable lengths in metres.
+    """
+
+    robot: Positional[Annotated[str, arg(metavar="ROBOT")]]
+    """a preset, or the path of a robot file"""
+    mjcf: Annotated[str, arg(metavar="FILE")]
+    """file for MuJoCo's XML"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,11 +120,28 @@ class Bench:
     link: every scheme of teleoperation on good and bad connections, with and without passivity
     control, in relaxed, stiff and worst-case hands; on all cores, a quarter of an hour.
 
+    rod: shapes at rest of a bare rod, built of links as the rod robot is, beside those in a file;
+    needs the file and the rod.
+
     startup: help, imports and the first control step of a new process.
     """
 
-    what: Positional[Annotated[What, arg(metavar="{mpc,scaling,tails,rate,qp,ik,link,startup}")]]
+    what: Positional[
+        Annotated[What, arg(metavar="{mpc,scaling,tails,rate,qp,ik,link,rod,startup}")]
+    ]
     """what to measure"""
+    file: Positional[Annotated[str | None, arg(metavar="CSV")]] = None
+    """rod: the shapes at rest"""
+    length: Annotated[float | None, arg(metavar="M")] = None
+    """rod: its length [m]"""
+    radius: Annotated[float | None, arg(metavar="M")] = None
+    """rod: radius of its section [m]"""
+    youngs: Annotated[float | None, arg(metavar="PA")] = None
+    """rod: Young's modulus [Pa]"""
+    poisson: Annotated[float | None, arg(metavar="NU")] = None
+    """rod: Poisson's ratio"""
+    density: Annotated[float | None, arg(metavar="KG/M3")] = None
+    """rod: density [kg/m^3]"""
     json: Annotated[str | None, arg(metavar="FILE")] = None
     """file for all numbers, settings, versions and solver logs"""
     out: Folder = "out/bench"

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from sinuous.bench.machine import one_thread
-from sinuous.cli.arguments import Bench, What
+from sinuous.cli.arguments import Bench
 from sinuous.cli.bench_progress import BenchProgress
+from sinuous.cli.bench_rod import refuse_rod
 from sinuous.cli.codes import GOOD
 from sinuous.errors import InputError
 
@@ -31,7 +32,7 @@ def bench(arguments: Bench) -> int:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise file_error(out, error, expected="a folder that can be written") from error
-    console, benchmark = Console(), _benchmark(arguments.what)
+    console, benchmark = Console(), _benchmark(arguments)
     with BenchProgress(console, arguments.what) as progress:
         result = benchmark.run(arguments.quick, progress.observe)
     print_result(console, result)
@@ -47,8 +48,13 @@ def bench(arguments: Bench) -> int:
     return GOOD
 
 
-def _benchmark(what: What) -> "Benchmark":
-    match what:
+def _benchmark(arguments: Bench) -> "Benchmark":
+    if arguments.what == "rod":
+        from sinuous.cli.bench_rod import rod_task
+
+        return rod_task(arguments).benchmark()
+    refuse_rod(arguments)
+    match arguments.what:
         case "mpc":
             from sinuous.bench.mpc import MPC
 

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 
 import tyro
 
-from sinuous.cli.arguments import Bench, Check, Compare, Reproduce, Run
+from sinuous.cli.arguments import Bench, Check, Compare, Export, Reproduce, Run
+from sinuous.cli.calibrate_arguments import Calibrate
 from sinuous.cli.codes import BAD_INPUT, GOOD, INTERRUPTED
 from sinuous.errors import InputError
 
@@ -21,7 +22,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     try:
         verb = tyro.cli(
-            Run | Check | Compare | Reproduce | Bench,  # pyright: ignore[reportArgumentType]
+            Run | Check | Calibrate | Export | Compare | Reproduce | Bench,  # pyright: ignore[reportArgumentType]
             prog="sinuous",
             description="Steer tendon-driven continuum robots inside a mesh without touching it.",
             args=None if argv is None else list(argv),
@@ -38,7 +39,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return INTERRUPTED
 
 
-def _call(verb: Run | Check | Compare | Reproduce | Bench) -> int:
+def _call(verb: Run | Check | Calibrate | Export | Compare | Reproduce | Bench) -> int:
     match verb:
         case Run():
             from sinuous.cli.run import run
@@ -48,6 +49,14 @@ def _call(verb: Run | Check | Compare | Reproduce | Bench) -> int:
             from sinuous.cli.check import check
 
             return check(verb)
+        case Calibrate():
+            from sinuous.cli.calibrate import run_calibrate
+
+            return run_calibrate(verb)
+        case Export():
+            from sinuous.cli.export import export
+
+            return export(verb)
         case Compare():
             from sinuous.cli.compare import compare
 

@@ -32,7 +32,8 @@ def run(arguments: Run) -> int:
     for figure in figures:
         console.print(f"  {figure}", markup=False, highlight=False, soft_wrap=True)
     if result.end is not End.FINISHED:
-        print(f"sinuous: {result.end.value}", file=sys.stderr)
+        why = f": {result.fault}" if result.fault else ""
+        print(f"sinuous: {result.end.value}{why}", file=sys.stderr)
     return CODES[result.end]
 
 

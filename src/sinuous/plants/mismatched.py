@@ -7,6 +7,7 @@ import numpy as np
 from sinuous.arrays import Array, ArrayLike
 from sinuous.measurement import Measurement
 from sinuous.plants.plant import Truth
+from sinuous.robots.cables import cable_rows
 from sinuous.robots.centreline import TILT, Bends, Centreline
 from sinuous.robots.chain_kernels import ARC
 from sinuous.robots.robot import Robot
@@ -110,7 +111,8 @@ class MismatchedPlant:
             raise ValueError("a mismatch is one of bending segments, and this robot has joints")
         self._bent = np.flatnonzero(robot.chain.turns == ARC)
         self._draw(np.random.default_rng((seed, STREAM)))
-        self._play = np.where(self._is_cable(), 0.5 * self._mismatch.play, 0.0)
+        self._play = np.zeros(len(robot.actuator_names))
+        self._play[cable_rows(robot)] = 0.5 * self._mismatch.play
         self._sag = self._compliance(robot.home)
         self._lengths = robot.lengths(robot.home if start is None else start)
         self._pulled = self._lengths  # what the cables follow, with play
@@ -136,12 +138,6 @@ class MismatchedPlant:
         self._coupling = m.coupling * scale[2, 1:]
         self._unevenness = np.zeros(len(self.robot.chain.theta_column))
         self._unevenness[self._bent] = m.unevenness * scale[3]
-
-    def _is_cable(self) -> Array:
-        """Which actuators bend the robot (P,)."""
-        columns = self.robot.chain.theta_column[self._bent]
-        slope = self.robot.lengths_jacobian(self.robot.home)
-        return np.any(slope[:, np.concatenate([columns, columns + 1])], axis=1)
 
     def _compliance(self, home: Array) -> float:
         """Weight per length over bending stiffness [1/m^3]: 8 sag / L^4 of a level beam."""

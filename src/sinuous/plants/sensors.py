@@ -1,7 +1,7 @@
 """What is seen of a plant: now and then, not exactly, and a little late.
 
-A sensor wraps any plant and is a plant itself. Encoders are read at every step; what an
-instrument says is taken at its own rate and handed over after a delay.
+A sensor wraps any plant and is a plant itself. Motors, their encoders and what they pull with, are
+read at every step; what an instrument says is taken at its own rate and handed over after a delay.
 """
 
 from collections import deque
@@ -70,7 +70,7 @@ class Sensor:
 
     def step(self, rates: Array, dt: float) -> Measurement:
         """Move with actuator rates (P,) [m/s] for dt [s] and measure."""
-        lengths = self._plant.step(rates, dt).lengths
+        now = self._plant.step(rates, dt)
         self._now += dt
         soon = self._now + ROUNDING * dt
         if soon * self._timing.rate >= self._count + 1:
@@ -80,7 +80,9 @@ class Sensor:
         while self._waiting and self._waiting[0][0] + self._timing.delay <= soon:
             self._shown = self._waiting.popleft()
         taken, reading = self._shown
-        return replace(reading, lengths=lengths, age=self._now - taken)
+        return replace(
+            reading, lengths=now.lengths, tensions=now.tensions, age=self._now - taken
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

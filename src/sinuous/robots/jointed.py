@@ -8,7 +8,7 @@ after the turns of the joints 1 to i.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from math import atan2, hypot
 from typing import ClassVar
@@ -22,6 +22,7 @@ from sinuous.robots.body import Section
 from sinuous.robots.chain_robot import ChainRobot, flat_rows, unflat
 from sinuous.robots.jointed_cables import hole_angles, hole_offsets, route
 from sinuous.robots.jointed_kernels import CABLES
+from sinuous.robots.mechanics import JointedMechanics
 from sinuous.robots.parts import JointOrder
 from sinuous.robots.routing import Routing
 
@@ -54,6 +55,7 @@ class JointedRobot(ChainRobot):
         bend_limit: largest angle between the two links at a joint [rad]
         cable_lengths: shortest and longest cables of each module (N,) [m]; by default only the
             bend limits bound them
+        mechanics: what makes it move if physics does; kinematics and controllers do not read it
 
     Raises:
         ValueError: if the numbers do not make a robot
@@ -69,6 +71,7 @@ class JointedRobot(ChainRobot):
     orders: tuple[JointOrder, ...]
     bend_limit: float
     cable_lengths: tuple[tuple[float, float], ...] = ()
+    mechanics: JointedMechanics = field(default_factory=JointedMechanics)
 
     def __post_init__(self) -> None:
         for name in ("radius", "plate_offset", "tube_length"):

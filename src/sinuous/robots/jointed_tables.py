@@ -1,14 +1,16 @@
 """The format of robot files with modules: millimetres and degrees, and what they must obey."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import degrees
 from typing import Annotated
 
 from pydantic import Field
 
-from sinuous.files import Angle, FieldError, Length
+from sinuous.files import Angle, FieldError, Inertia, Length, Mass, RotaryDamping
 from sinuous.robots.jointed import ROUNDING, JointedRobot, contact_bend
 from sinuous.robots.jointed_kernels import CABLES
+from sinuous.robots.mechanics import JointedMechanics
+from sinuous.robots.mechanics_tables import CablePhysicsTable, NotNegative
 from sinuous.robots.parts import JointOrder, SpeedLimits
 from sinuous.robots.robot_tables import (
     LimitsTable,
@@ -83,11 +85,31 @@ class JointedLimitsTable(LimitsTable):
 
 
 @dataclass(frozen=True, kw_only=True)
+class JointedPhysicsTable(CablePhysicsTable):
+    """`[physics]` of a robot of modules: all of it is for physics plants only."""
+
+    module_mass: Annotated[Mass, Positive] = JointedMechanics.module_mass
+    joint_damping: Annotated[RotaryDamping, NotNegative] = JointedMechanics.joint_damping
+    joint_armature: Annotated[Inertia, NotNegative] = JointedMechanics.joint_armature
+
+    @property
+    def mechanics(self) -> JointedMechanics:
+        """What the robot is built from."""
+        return JointedMechanics(
+            cables=self.cables,
+            module_mass=self.module_mass,
+            joint_damping=self.joint_damping,
+            joint_armature=self.joint_armature,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
 class JointedTable(RobotTable):
     """A robot file with modules."""
 
     modules: ModulesTable
     limits: Annotated[dict[str, JointedLimitsTable], Field(min_length=1)]
+    physics: JointedPhysicsTable = field(default_factory=JointedPhysicsTable)
 
     def __post_init__(self) -> None:
         self.check_insertion(self.limits)
@@ -120,4 +142,5 @@ class JointedTable(RobotTable):
             insertion=self.insertion and self.insertion.part,
             tool=self.tool and self.tool.part,
             spacing=self.guard_spacing,
+            mechanics=self.physics.mechanics,
         )

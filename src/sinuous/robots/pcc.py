@@ -7,7 +7,7 @@ sin s_m), so the cable-sum rule (19) holds for every configuration and a straigh
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -17,8 +17,10 @@ from sinuous.robots import routing
 from sinuous.robots.bending import BendLimits
 from sinuous.robots.body import Section
 from sinuous.robots.chain_robot import ChainRobot
+from sinuous.robots.fitted_tables import Fitted
 from sinuous.robots.layout import Layout
 from sinuous.robots.parts import CableConvention, Segment
+from sinuous.robots.rod_mechanics import RodMechanics
 from sinuous.robots.routing import Routing
 
 
@@ -28,11 +30,14 @@ class PccRobot(ChainRobot):
 
     Coordinates (n,): [insertion], then per segment theta_x, theta_y [rad] and, where it is
     extensible, gamma [m].  Actuators (P,): [insertion], then per segment its cables and,
-    where it is extensible, its backbone [m].
+    where it is extensible, its backbone [m].  The mechanics are what makes it move if physics
+    does; kinematics and controllers do not read them.
     """
 
     segments: tuple[Segment, ...]
     convention: CableConvention = CableConvention.SEGMENT
+    mechanics: RodMechanics = field(default_factory=RodMechanics)
+    fitted: Fitted | None = None  # what was found out about one real robot
 
     # --- coordinates and actuators -------------------------------------------------------
 

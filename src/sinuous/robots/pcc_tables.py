@@ -1,6 +1,6 @@
 """The format of robot files with segments: millimetres and degrees, and what they must obey."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import inf
 from typing import Annotated
 
@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from sinuous.files import Angle, Curvature, FieldError, Length, Speed
+from sinuous.robots.fitted_tables import FittedTable
 from sinuous.robots.parts import CableConvention, Segment, SpeedLimits
 from sinuous.robots.pcc import PccRobot
 from sinuous.robots.robot_tables import (
@@ -20,6 +21,7 @@ from sinuous.robots.robot_tables import (
     one_each,
     speed_missing,
 )
+from sinuous.robots.rod_tables import RodPhysicsTable
 
 # Least ratio of the singular values of a segment's cable offsets: below it the bend across
 # the cables' common plane would be read from length differences under a thousandth of it.
@@ -39,6 +41,7 @@ class SegmentTable:
     home_length: Length | None = None
     min_bend_radius: Annotated[Length, Positive] | None = None
     max_curvature: Annotated[Curvature, Positive] | None = None
+    effective_pitch: Annotated[Length, Positive] | None = None  # of elastic cables, by calibration
 
     def __post_init__(self) -> None:
         self._check_lengths()
@@ -72,6 +75,12 @@ class SegmentTable:
         return one if isinstance(one, tuple) else (one,) * len(self.cable_angles)
 
     @property
+    def effective_radii(self) -> tuple[float, ...]:
+        """Pitch radius of every cable [m] that kinematics reckon with."""
+        one = self.effective_pitch
+        return self.radii if one is None else (one,) * len(self.cable_angles)
+
+    @property
     def curvature(self) -> float:
         """Largest curvature [1/m], infinite if none is stated."""
         if self.min_bend_radius is not None:
@@ -85,7 +94,7 @@ class SegmentTable:
             home_length=self.home,
             disks=self.disks,
             cable_angles=self.cable_angles,
-            pitch_radii=self.radii,
+            pitch_radii=self.effective_radii,
             body_radius=self.body_radius,
             disk_thickness=self.disk_thickness,
             max_curvature=self.curvature,
@@ -147,6 +156,8 @@ class PccTable(RobotTable):
     segment: Annotated[tuple[SegmentTable, ...], Field(min_length=1)]
     limits: Annotated[dict[str, PccLimitsTable], Field(min_length=1)]
     cable_convention: CableConvention = CableConvention.SEGMENT
+    physics: RodPhysicsTable = field(default_factory=RodPhysicsTable)
+    fitted: FittedTable | None = None
 
     def __post_init__(self) -> None:
         for name, limits in self.limits.items():
@@ -154,6 +165,8 @@ class PccTable(RobotTable):
                 place = ("limits", name, "backbone_speed")
                 raise speed_missing(place, "a segment changes its length")
         self.check_insertion(self.limits)
+        if self.fitted is not None:
+            self._check_fitted(self.fitted)
         for name, limits in self.limits.items():
             check_ranges(
                 ("limits", name, "cable_length"),
@@ -162,6 +175,17 @@ class PccTable(RobotTable):
                 part="segment",
                 causes="the home length or the cable convention",
             )
+
+    def _check_fitted(self, fitted: FittedTable) -> None:
+        """Refuse a calibration that is none of this robot."""
+        fixed = self.insertion is None and not any(table.extensible for table in self.segment)
+        if not fixed or self.cable_convention is not CableConvention.MOTOR:
+            raise FieldError(
+                "fitted",
+                expected="segments of fixed length on a fixed base, cables counted at the motors",
+                remedy='Take [fitted] out, or write cable_convention = "motor".',
+            )
+        fitted.check(sum(len(table.cable_angles) for table in self.segment), len(self.segment))
 
     def _cables_at_home(self) -> list[float]:
         """Length [m] of every segment's cables, by the file's convention."""
@@ -173,9 +197,10 @@ class PccTable(RobotTable):
         """Return the robot with these limits."""
         chosen = self.limits[limits]
         lengths = one_each(chosen.cable_length, len(self.segment))
+        segments = tuple(t.part(each) for t, each in zip(self.segment, lengths, strict=True))
         return PccRobot(
             name=self.name,
-            segments=tuple(t.part(each) for t, each in zip(self.segment, lengths, strict=True)),
+            segments=segments,
             speed=SpeedLimits(
                 cable=chosen.cable_speed,
                 backbone=chosen.backbone_speed or 0.0,  # without an actuator nobody reads it
@@ -185,4 +210,6 @@ class PccTable(RobotTable):
             insertion=self.insertion and self.insertion.part,
             tool=self.tool and self.tool.part,
             spacing=self.guard_spacing,
+            mechanics=self.physics.mechanics,
+            fitted=self.fitted and self.fitted.part(segments),
         )
