@@ -10,8 +10,9 @@ import sinuous as sn
 from sinuous.cli import main
 from sinuous.errors import InputError
 from sinuous.files import write_text
+from sinuous.plants.plant import PlantFault
 from sinuous.scenario import load_scenario
-from sinuous.session import PlantFailure, steps
+from sinuous.session import steps
 from sinuous.session.by_hand import signal_names
 from sinuous.view.figures import save_figures
 
@@ -158,7 +159,7 @@ def test_a_fault_of_the_plant_ends_the_run(tmp_path: Path) -> None:
     broken = sn.Scenario(
         name="broken", mpc=found.mpc, path=found.path, teleop=found.teleop, plant=Broken
     )
-    with pytest.raises(PlantFailure):
+    with pytest.raises(PlantFault, match="not a finite number"):
         list(steps(broken))
 
 

@@ -18,7 +18,7 @@ from sinuous.errors import InputError
 from sinuous.recording import Header, Recorder, Recording, Sample, ZonePart, read, status_name
 from sinuous.recording.messages import LEVELS, ZONE_COLORS
 
-POINTS, ACTUATORS, COORDINATES = 7, 5, 3
+POINTS, ACTUATORS, COORDINATES, CABLES = 7, 5, 3, 4
 ANY_FLOAT = st.floats(width=64)
 
 
@@ -68,6 +68,8 @@ def make_sample(k: int, seed: int = 0, **changes: Any) -> Sample:
         "iterations": int(rng.integers(0, 100)),
         "planes": int(rng.integers(0, 100)),
         "step_fraction": float(rng.random()),
+        "tensions": rng.random(CABLES),
+        "contacts": rng.random(3),
         "active": ("cable 1.2 at its limit", "triangle 12 of tube.stl")[: k % 3],
     }
     return Sample(**values | changes)
@@ -298,9 +300,9 @@ NOT_RECORDINGS = {
     "nonsense": (MAGIC + bytes(range(256)) * 4, "no header"),
     "long record": (MAGIC + struct.pack("<BQ", 12, 2**63), "no header"),
     "other": (_foreign(None), "no header"),
-    "newer": (_foreign({"format": "4"}), "format 4"),
-    "incomplete": (_foreign({"format": "3", "name": '"x"'}), "missing parts"),
-    "not json": (_foreign({"format": "3", "name": "{"}), "missing parts"),
+    "newer": (_foreign({"format": "5"}), "format 5"),
+    "incomplete": (_foreign({"format": "4", "name": '"x"'}), "missing parts"),
+    "not json": (_foreign({"format": "4", "name": "{"}), "missing parts"),
 }
 
 

@@ -37,6 +37,11 @@ def summarise(recording: Recording, *, wall_time: float | None = None) -> dict[s
         the tip to where it should be at every tick; `felt_force_rms_n` and `felt_force_max_n`, the
         force fed back; `channel_energy_least_j`, below zero if the channel made energy;
         `fault_ticks`, in which an end held still because of a fault
+    `physics`
+        None unless the plant knows its cables' tensions; else `least_tension_n` and
+        `slack_fraction`, share of the steps in which a cable was slack; `wall_contacts`, number of
+        steps that touched a wall, `contact_force_max_n`, the largest of one contact, and
+        `penetration_max_m`
     `seed`, `versions`
         what is needed to run it again
 
@@ -56,6 +61,7 @@ def summarise(recording: Recording, *, wall_time: float | None = None) -> dict[s
         "solve_time_s": _times(recording.solve_time),
         "real_time_factor": _finite(simulated / wall_time) if wall_time else None,
         "teleop": _by_hand(recording) if len(recording.signals) else None,
+        "physics": _physics(recording) if recording.tensions.size else None,
         "seed": recording.header.seed,
         "versions": dict(recording.header.versions),
     }
@@ -71,6 +77,17 @@ def _by_hand(recording: Recording) -> dict[str, float | int | None]:
         "felt_force_max_n": _finite(np.max(felt)),
         "channel_energy_least_j": _finite(min(0.0, float(np.min(recording.signal("channel_j"))))),
         "fault_ticks": int(np.count_nonzero(recording.signal("fault"))),
+    }
+
+
+def _physics(recording: Recording) -> dict[str, float | int | None]:
+    depth, largest, _ = recording.contacts.T
+    return {
+        "least_tension_n": _finite(np.min(recording.tensions)),
+        "slack_fraction": _finite(np.mean(np.any(recording.tensions <= 0.0, axis=1))),
+        "wall_contacts": int(np.count_nonzero(largest > 0.0)),
+        "contact_force_max_n": _finite(np.max(largest)),
+        "penetration_max_m": _finite(max(0.0, float(np.max(depth)))),
     }
 
 

@@ -104,6 +104,7 @@ class Command:
         local: the part of the rates that a local controller adds (P,) [m/s]; empty without one
         clipped: share of the rates asked for that limits took away, 0 to 1
         offset: of the real tip from the nominal one, which the plan aims around (3,) [m]
+        tensions: of the cables, as the controller knows them (C,) [N]; empty if it does not
     """
 
     rates: Array
@@ -111,6 +112,7 @@ class Command:
     local: Array = field(default_factory=lambda: NOTHING)
     clipped: float = 0.0
     offset: Array = field(default_factory=lambda: NOWHERE)
+    tensions: Array = field(default_factory=lambda: NOTHING)
 
 
 def hold_still(robot: Robot, zone: SafeZone, c: Array, reason: str, began: float) -> Command:

@@ -10,7 +10,7 @@ from sinuous.arrays import Array, IntArray
 from sinuous.recording.run import Header
 
 METADATA = "sinuous"
-FORMAT = 3
+FORMAT = 4
 """Grows when a recording can no longer be read by older versions."""
 
 ROBOT_FILE = "robot.toml"

@@ -263,6 +263,8 @@ TOPICS = (
     _vector("/local/rates", "local_rates"),
     _number("/local/clipped", "clipped"),
     _position("/offset", "offset"),
+    _vector("/tensions", "tensions"),
+    _vector("/contacts", "contacts"),
     _number("/solve_time", "solve_time"),
     Topic(
         name="/signals",

@@ -79,6 +79,9 @@ class Sample:
     step_fraction: float  # how much of the planned step the safety filter let through, 0 to 1
     active: tuple[str, ...]  # what limits the robot right now, for people
 
+    tensions: Array = field(default_factory=lambda: np.zeros(0))  # (C,) of the plant's cables [N]
+    # deepest penetration of walls [m], largest and total force [N] since the last sample
+    contacts: Array = field(default_factory=lambda: np.zeros(3))
     signals: Array = field(default_factory=lambda: np.zeros((0, 0)))  # (k, C) of the ticks
 
 
@@ -116,6 +119,9 @@ class Recording:
     planes: IntArray  # (K,)
     step_fraction: Array  # (K,)
     active: tuple[tuple[str, ...], ...]  # (K,)
+
+    tensions: Array  # (K, C) [N]; (K, 0) of plants that do not know them
+    contacts: Array  # (K, 3) penetration [m], largest and total force [N]
 
     signals: Array  # (T, C) of all ticks
 
@@ -164,6 +170,8 @@ class Recording:
             planes=np.array([s.planes for s in samples], dtype=np.int64),
             step_fraction=_stack([s.step_fraction for s in samples], ()),
             active=tuple(s.active for s in samples),
+            tensions=_stack([s.tensions for s in samples], (0,)),
+            contacts=_stack([s.contacts for s in samples], (3,)),
             signals=_join([s.signals for s in samples if s.signals.size], len(header.signals)),
         )
 

@@ -10,8 +10,9 @@ from sinuous.control.dls import DampedLeastSquares
 from sinuous.control.local import LocalController
 from sinuous.control.offset_free import OffsetFree, When
 from sinuous.control.pid import Pid
+from sinuous.control.tension import TautCables
 from sinuous.control.transmission import Transmission
-from sinuous.files import Decay, Duration, FieldError, Frequency, Length, Turning
+from sinuous.files import Decay, Duration, FieldError, Force, Frequency, Length, Turning
 
 _NotNegative = Field(ge=0.0)
 _Positive = Field(gt=0.0)
@@ -82,6 +83,16 @@ class CableLoopTable:
 
 
 @dataclass(frozen=True, kw_only=True)
+class TautTable:
+    """`[control.taut]`: keep every cable above a least tension."""
+
+    floor: Annotated[Force, _Positive]
+    time_constant: Annotated[Duration, _Positive] = TautCables.time_constant
+    most: Annotated[Length, _Positive] = TautCables.most  # that cables are pulled in
+    estimate: bool = False  # tensions where none are measured
+
+
+@dataclass(frozen=True, kw_only=True)
 class ControlTable:
     """`[control]`: which controller runs, and its feedback."""
 
@@ -89,6 +100,7 @@ class ControlTable:
     project_target: bool = False  # onto where the tip keeps the margin
     local: LocalTable | None = None
     offset_free: OffsetFreeTable | None = None
+    taut: TautTable | None = None
     dls: DlsTable = field(default_factory=DlsTable)
     cable_loop: CableLoopTable = field(default_factory=CableLoopTable)
 

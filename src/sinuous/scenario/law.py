@@ -13,8 +13,12 @@ from sinuous.control.mpc import ShapeConstrainedMPC
 from sinuous.control.offset_free import OffsetFree
 from sinuous.control.pid import Pid
 from sinuous.control.projected import ProjectedTarget
+from sinuous.control.tension import TautCables
+from sinuous.control.tension_estimate import BackboneTensions
 from sinuous.control.transmission import Transmission
 from sinuous.robots.jointed import JointedRobot
+from sinuous.robots.pcc import PccRobot
+from sinuous.robots.robot import Robot
 from sinuous.scenario.control_tables import ControlTable, LawChoice, LocalTable, OffsetFreeTable
 
 
@@ -109,15 +113,72 @@ class Projected:
         return ProjectedTarget(mpc if self.law is None else self.law(mpc))
 
 
-def law_of(table: ControlTable, *, seen: bool) -> Law | Projected | None:
+@dataclass(frozen=True, kw_only=True)
+class Taut:
+    """A controller whose cables are kept taut: `TautCables`.
+
+    Arguments:
+        law: makes the controller, None for the plan itself
+        floor: least tension [N]
+        time_constant: in which it is reached [s]
+        most: that cables are pulled in [m]
+        estimate: whether tensions are estimated where none are measured
+    """
+
+    law: Law | Projected | None
+    floor: float
+    time_constant: float
+    most: float
+    estimate: bool
+
+    def __call__(self, mpc: ShapeConstrainedMPC) -> Controller[Any]:
+        """The controller with what keeps its cables taut.
+
+        Raises:
+            ValueError: if tensions cannot be estimated for this robot
+        """
+        robot = mpc.robot
+        if not isinstance(robot, PccRobot | JointedRobot):
+            raise ValueError("taut cables need a robot whose mechanics are known")
+        return TautCables(
+            mpc if self.law is None else self.law(mpc),
+            floor=self.floor,
+            stiffness=robot.mechanics.cables.stiffness,
+            time_constant=self.time_constant,
+            most=self.most,
+            estimate=BackboneTensions(robot=segmented(robot)) if self.estimate else None,
+        )
+
+
+def segmented(robot: Robot) -> PccRobot:
+    """The robot, if it is one of segments.
+
+    Raises:
+        ValueError: if it is not
+    """
+    if not isinstance(robot, PccRobot):
+        raise ValueError("tensions are estimated by the backbone's stiffness, and joints have none")
+    return robot
+
+
+def law_of(table: ControlTable, *, seen: bool) -> Law | Projected | Taut | None:
     """What makes the controller, None for the plan alone.
 
     Arguments:
         seen: whether sensors say something of the robot that the plan does not know, so that
             the plan gets feedback even if no table says so
     """
-    law = _unprojected(table, seen=seen)
-    return Projected(law=law) if table.project_target else law
+    law, taut = _unprojected(table, seen=seen), table.taut
+    law = Projected(law=law) if table.project_target else law
+    if taut is None:
+        return law
+    return Taut(
+        law=law,
+        floor=taut.floor,
+        time_constant=taut.time_constant,
+        most=taut.most,
+        estimate=taut.estimate,
+    )
 
 
 def _unprojected(table: ControlTable, *, seen: bool) -> Law | None:

@@ -6,9 +6,20 @@ from typing import Annotated
 
 from pydantic import AllowInfNan, Field
 
-from sinuous.files import Angle, Curvature, Duration, FieldError, Frequency, Length
+from sinuous.files import (
+    Acceleration,
+    Angle,
+    Curvature,
+    Duration,
+    FieldError,
+    Force,
+    Frequency,
+    Length,
+    Mass,
+)
 from sinuous.plants.fibre import Fibre
 from sinuous.plants.mismatched import Mismatch
+from sinuous.plants.physics.assembly import GRAVITY, TICK
 
 _NotNegative = Field(ge=0.0)
 _Positive = Field(gt=0.0)
@@ -60,27 +71,41 @@ class RecordedTable:
 
 
 @dataclass(frozen=True, kw_only=True)
+class PhysicsTable:
+    """`[plant.physics]`: the robot in a physics engine, by the `[physics]` of its own file."""
+
+    gravity: tuple[Acceleration, Acceleration, Acceleration] = GRAVITY  # in the world
+    payload: Annotated[Mass, _NotNegative] = 0.0  # at the tip
+    tip_force: tuple[Force, Force, Force] = (0.0, 0.0, 0.0)  # in the world
+    walls: bool = True  # the zone's facets push back
+    tension_sensors: bool = True  # the controller is told the cables' tensions
+    tick: Annotated[Duration, _Positive] = TICK  # of the engine, at most
+
+
+@dataclass(frozen=True, kw_only=True)
 class PlantTable:
     """`[plant]`: what stands in for the robot: by default its model, exact or disturbed."""
 
     disturbance: DisturbanceTable | None = None
     mismatch: MismatchTable | None = None
     recorded: RecordedTable | None = None
+    physics: PhysicsTable | None = None
     encoder_step: Annotated[Length, _NotNegative] = 0.0  # above zero nothing else is measured
 
     def __post_init__(self) -> None:
-        given = [name for name in ("disturbance", "mismatch", "recorded") if getattr(self, name)]
+        kinds = ("disturbance", "mismatch", "recorded", "physics")
+        given = [name for name in kinds if getattr(self, name)]
         if len(given) > 1:
             raise FieldError(
                 given[1],
-                expected="one of disturbance, mismatch and recorded",
+                expected="one of disturbance, mismatch, recorded and physics",
                 remedy="Each is a plant of its own: keep one of them.",
             )
-        if self.encoder_step > 0.0 and (self.mismatch or self.recorded):
+        if self.encoder_step > 0.0 and (self.mismatch or self.recorded or self.physics):
             raise FieldError(
                 "encoder_step",
-                expected="none with a mismatch or a record",
-                remedy="Their encoders are exact, and read as recorded: take it out.",
+                expected="none with a mismatch, a record or physics",
+                remedy="Their encoders are exact, or read as recorded: take it out.",
             )
 
 

@@ -1,13 +1,12 @@
 """Runs a scenario: target, controller, plant and recording on one simulated clock."""
 
-from sinuous.session.loop import REST_SPEED, REST_STEPS, PlantFailure, Rest, steps, steps_per_sample
+from sinuous.session.loop import REST_SPEED, REST_STEPS, Rest, steps, steps_per_sample
 from sinuous.session.runner import End, Result, run
 
 __all__ = [
     "REST_SPEED",
     "REST_STEPS",
     "End",
-    "PlantFailure",
     "Rest",
     "Result",
     "run",

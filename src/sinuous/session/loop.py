@@ -10,8 +10,10 @@ from sinuous.arrays import Array
 from sinuous.control.controller import ControllerState
 from sinuous.control.report import Command
 from sinuous.measurement import Measurement
-from sinuous.plants.plant import Truth
+from sinuous.plants.plant import NO_CONTACT, Contacts, PlantFault, Truth
 from sinuous.recording import Sample, status_name
+from sinuous.robots.cables import cable_rows
+from sinuous.robots.robot import Robot
 from sinuous.scenario import Scenario
 from sinuous.scenario.path import Leg
 from sinuous.session.guide import guide_of
@@ -25,10 +27,6 @@ REST_STEPS = 10
 FAST, SAMPLE = 0.005, 0.03
 
 
-class PlantFailure(Exception):
-    """The plant measured something that is not a finite number."""
-
-
 def steps(scenario: Scenario) -> Iterator[Sample]:
     """Yield every sample of a scenario's run; a sample's time is that of its end.
 
@@ -38,7 +36,7 @@ def steps(scenario: Scenario) -> Iterator[Sample]:
     how the plant is.
 
     Raises:
-        PlantFailure: if the plant measures something that is not a finite number
+        PlantFault: if the plant fails, or measures something that is not a finite number
     """
     loop = _Loop(scenario)
     for leg in loop.legs:
@@ -86,9 +84,10 @@ class _Loop:
     def _sample(self, steps: int) -> tuple[Sample, Array]:
         """Take some control steps; what happened, and where the nominal body then is."""
         clearance, clipped, longest, before = np.inf, 0.0, 0.0, self._state.c
-        command = target = None
+        command, target, contacts = None, None, NO_CONTACT
         for _ in range(steps):
             command, target = self._step()
+            contacts = contacts.worst(self._plant.truth.contacts)
             clipped = max(clipped, command.clipped)
             longest = max(longest, command.report.solve_time)
             if self._scenario.zone.surfaces:
@@ -100,7 +99,7 @@ class _Loop:
         self._steps += steps
         truth = self._plant.truth
         if not _finite(self._measured, truth):
-            raise PlantFailure
+            raise PlantFault("it measured something that is not a finite number")
         sample = _sample(
             self._scenario,
             time=self._steps * self._dt,
@@ -112,6 +111,7 @@ class _Loop:
             clearance=clearance,
             clipped=clipped,
             solve_time=longest,
+            contacts=contacts,
             signals=self._guide.take(),
         )
         return sample, command.report.points
@@ -157,6 +157,13 @@ class Rest:
         return self._still >= self._enough
 
 
+def _slack(robot: Robot, tensions: Array) -> Iterator[str]:
+    """Cables without tension, as far as tensions (C,) [N] are known."""
+    if len(tensions):
+        for row in cable_rows(robot)[tensions <= 0.0]:
+            yield f"{robot.actuator_names[row]} is slack"
+
+
 def _finite(measured: Measurement, truth: Truth) -> bool:
     values = (
         measured.points,
@@ -181,9 +188,11 @@ def _sample(
     clearance: float,
     clipped: float,
     solve_time: float,
+    contacts: Contacts,
     signals: Array,
 ) -> Sample:
     robot, report = scenario.robot, command.report
+    known = command.tensions if len(command.tensions) else measured.tensions
     return Sample(
         time=time,
         target=target,
@@ -207,6 +216,8 @@ def _sample(
         iterations=report.iterations,
         planes=report.planes,
         step_fraction=report.step_fraction,
-        active=tuple(active.name for active in report.active),
+        active=(*(active.name for active in report.active), *_slack(robot, known)),
+        tensions=truth.tensions,
+        contacts=np.array(contacts),
         signals=signals,
     )

@@ -11,12 +11,13 @@ from time import perf_counter
 from typing import Any
 
 from sinuous.measurement import Measurement
+from sinuous.plants.plant import PlantFault
 from sinuous.recording import Recording, Sample
 from sinuous.scenario import Scenario
 from sinuous.scenario.start import check_start
 from sinuous.session.folder import RunFolder
 from sinuous.session.header import make_header
-from sinuous.session.loop import PlantFailure, steps
+from sinuous.session.loop import steps
 from sinuous.summary import summarise
 
 
@@ -25,7 +26,7 @@ class End(Enum):
 
     FINISHED = "finished: the path is done"
     INTERRUPTED = "interrupted: what ran until then is kept"
-    PLANT_FAILED = "the plant failed: it measured something that is not a finite number"
+    PLANT_FAILED = "the plant failed"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -36,11 +37,13 @@ class Result:
         recording: every step
         summary: what `sinuous.summary.summarise` says about it
         end: how the run ended
+        fault: of the plant; empty if there was none
     """
 
     recording: Recording
     summary: dict[str, Any]
     end: End
+    fault: str = ""
 
 
 def _nothing(*_: object) -> None:
@@ -70,7 +73,7 @@ def run(
     folder = None if out is None else RunFolder.prepare(out)
     warm_up(scenario)
     header = make_header(scenario)
-    samples, end = list[Sample](), End.FINISHED
+    samples, end, fault = list[Sample](), End.FINISHED, ""
     opened = nullcontext() if folder is None else folder.record(header)
     with opened as recorder, _interruptible() as interrupted:
         started()
@@ -86,14 +89,14 @@ def run(
                     break
         except KeyboardInterrupt:
             end = End.INTERRUPTED
-        except PlantFailure:
-            end = End.PLANT_FAILED
+        except PlantFault as error:
+            end, fault = End.PLANT_FAILED, str(error)
         wall_time = perf_counter() - began
     recording = Recording.from_samples(header, samples)
     summary = summarise(recording, wall_time=wall_time)
     if folder is not None:
         folder.write_summary(summary)
-    return Result(recording=recording, summary=summary, end=end)
+    return Result(recording=recording, summary=summary, end=end, fault=fault)
 
 
 def warm_up(scenario: Scenario) -> None:

@@ -6,9 +6,10 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from sinuous.view.units import factor, millijoules, millimetres, milliseconds, newtons
+from sinuous.view.units import factor, millijoules, millimetres, milliseconds, newtons, percent
 
 NO_WALL = "no wall"
+SLACK, CONTACTS = "steps with a slack cable", "steps that touched a wall"
 
 
 def summary_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -26,6 +27,7 @@ def summary_rows(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
         ("solve time, longest", milliseconds(times["max"])),
         ("real-time factor", factor(summary["real_time_factor"])),
         *_by_hand(summary["teleop"]),
+        *_physics(summary["physics"]),
         ("seed", str(summary["seed"])),
     ]
 
@@ -42,6 +44,18 @@ def _by_hand(teleop: Mapping[str, Any] | None) -> list[tuple[str, str]]:
     ]
 
 
+def _physics(physics: Mapping[str, Any] | None) -> list[tuple[str, str]]:
+    if physics is None:
+        return []
+    return [
+        ("least cable tension", newtons(physics["least_tension_n"])),
+        (SLACK, percent(physics["slack_fraction"])),
+        (CONTACTS, _count(physics["wall_contacts"])),
+        ("wall force, largest", newtons(physics["contact_force_max_n"])),
+        ("deepest in a wall", millimetres(physics["penetration_max_m"])),
+    ]
+
+
 def print_summary(
     console: Console, summary: Mapping[str, Any], *, title: str | None = None
 ) -> None:
@@ -49,10 +63,15 @@ def print_summary(
     table = Table(title=title, show_header=False)
     table.add_column(style="bold")
     table.add_column(justify="right")
-    bad = {"margin violations": "margin_violations", "solver failures": "solver_failures"}
+    physics = summary["physics"] or {}
+    bad = {
+        "margin violations": summary["margin_violations"],
+        "solver failures": summary["solver_failures"],
+        SLACK: physics.get("slack_fraction", 0),
+        CONTACTS: physics.get("wall_contacts", 0),
+    }
     for label, text in summary_rows(summary):
-        alarming = label in bad and summary[bad[label]] > 0
-        table.add_row(label, text, style="red" if alarming else None)
+        table.add_row(label, text, style="red" if bad.get(label, 0) > 0 else None)
     console.print(table)
 
 

@@ -23,6 +23,13 @@ def factor(value: float | None, missing: str = UNKNOWN) -> str:
     return missing if value is None else f"{value:.3g} x"
 
 
+def percent(value: float | None, missing: str = UNKNOWN) -> str:
+    """A share; none if it is zero."""
+    if value is None:
+        return missing
+    return f"{value * PERCENT:.1f} %" if value else "none"
+
+
 def newtons(value: float | None, missing: str = UNKNOWN) -> str:
     """A force [N]."""
     return missing if value is None else f"{value:.3f} N"

@@ -1,0 +1,150 @@
+"""Cables that stay taut: pulled together where one of them would go slack.
+
+Pulling all cables of a segment alike bends nothing and raises every tension. Paper B names the
+loss of tension as what its model suffers from most (section V): a slack cable does nothing, while
+the model counts on it.
+"""
+
+from collections.abc import Callable
+from dataclasses import KW_ONLY, dataclass, replace
+from functools import cached_property
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from sinuous.arrays import Array, ArrayLike
+from sinuous.control.controller import Controller, ControllerState
+from sinuous.control.report import Command
+from sinuous.control.saturation import speed_share
+from sinuous.geometry.safe_zone import SafeZone
+from sinuous.measurement import Measurement
+from sinuous.robots.cables import cable_rows, co_contractions
+from sinuous.robots.robot import Robot
+
+S = TypeVar("S", bound=ControllerState)
+
+Estimate = Callable[[Array, Array], Array]
+"""Tensions (C,) [N] at a configuration (n,) with cables pulled in by (C,) [m]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TautState(Generic[S]):
+    """What the controller remembers between steps.
+
+    Arguments:
+        inner: state of the controller whose cables are kept taut
+        pulled: by how much each group of cables is pulled in (G,) [m]
+    """
+
+    inner: S
+    pulled: Array
+
+    @property
+    def c(self) -> Array:
+        """Nominal configuration (n,)."""
+        return self.inner.c
+
+
+@dataclass(frozen=True, eq=False)
+class TautCables(Generic[S]):
+    """Keeps every cable above a least tension, beside any controller.
+
+    Each group of cables that bends nothing when pulled together (`robots.cables`) is pulled in
+    until its least tension is the floor, and let out again when there is more than that:
+
+        d pulled / dt = (floor - least tension) / (stiffness x time constant),  0 <= pulled <= most.
+
+    The controller inside reads lengths without what is pulled in, so its model holds, and its
+    rates have priority over the pulling. Tensions are those measured, else those estimated;
+    without either nothing is done.
+
+    Arguments:
+        controller: any controller
+        floor: least tension [N]
+        stiffness: of a cable [N/m]
+        time_constant: in which a tension comes to the floor [s]
+        most: that a group is pulled in [m]
+        estimate: of tensions, used where none are measured
+
+    Raises:
+        ValueError: if a number is not positive
+    """
+
+    controller: Controller[S]
+    _: KW_ONLY
+    floor: float
+    stiffness: float
+    time_constant: float = 0.3
+    most: float = 3e-3
+    estimate: Estimate | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("floor", "stiffness", "time_constant", "most"):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise ValueError(f"{name} must be positive and finite, not {getattr(self, name)}")
+
+    @property
+    def robot(self) -> Robot:
+        """The controller's."""
+        return self.controller.robot
+
+    @property
+    def zone(self) -> SafeZone:
+        """The room it may use."""
+        return self.controller.zone
+
+    @property
+    def margin(self) -> float:
+        """Least distance between body surface and wall [m]."""
+        return self.controller.margin
+
+    @property
+    def dt(self) -> float:
+        """Time between steps [s]."""
+        return self.controller.dt
+
+    @cached_property
+    def _cables(self) -> Array:
+        """Which actuators are cables, as a matrix that picks them (C, P)."""
+        return np.eye(len(self.robot.actuator_names))[cable_rows(self.robot)]
+
+    @cached_property
+    def _groups(self) -> Array:
+        """Shares (G, C) of what is pulled in."""
+        return co_contractions(self.robot)
+
+    def init(self, c: ArrayLike) -> TautState[S]:
+        """The state to start from, at rest at configuration c (n,), with nothing pulled in."""
+        return TautState(inner=self.controller.init(c), pulled=np.zeros(len(self._groups)))
+
+    def step(
+        self, state: TautState[S], target: ArrayLike, measured: Measurement | None = None
+    ) -> tuple[TautState[S], Command]:
+        """One step towards target (3,) [m], given what was measured at its beginning."""
+        shift = state.pulled @ self._groups
+        seen = measured
+        if measured is not None:
+            seen = replace(measured, lengths=measured.lengths + shift @ self._cables)
+        inner, command = self.controller.step(state.inner, target, seen)
+        tensions = self._tensions(inner, measured, shift)
+        if not len(tensions) or not np.all(np.isfinite(tensions)):
+            return replace(state, inner=inner), command
+        pulled = self._pulled(state.pulled, tensions, command)
+        rates = command.rates - (pulled - state.pulled) @ self._groups @ self._cables / self.dt
+        return TautState(inner=inner, pulled=pulled), replace(
+            command, rates=rates, tensions=tensions
+        )
+
+    def _tensions(self, inner: S, measured: Measurement | None, shift: Array) -> Array:
+        """Of the cables (C,) [N]; (0,) if nothing is known of them."""
+        if measured is not None and len(measured.tensions):
+            return measured.tensions
+        return np.zeros(0) if self.estimate is None else self.estimate(inner.c, shift)
+
+    def _pulled(self, before: Array, tensions: Array, command: Command) -> Array:
+        """What is pulled in after the step (G,) [m]."""
+        least = np.min(np.where(self._groups > 0.0, tensions, np.inf), axis=1)
+        speed = (self.floor - least) / (self.stiffness * self.time_constant)
+        change = np.clip(before + self.dt * speed, 0.0, self.most) - before
+        rates = -change @ self._groups @ self._cables / self.dt
+        return before + speed_share(self.robot, rates, command.rates) * change
