@@ -193,8 +193,15 @@ def test_the_controller_never_sees_the_truth(law: str) -> None:
         (["plant.mismatch.pitch_factor=0"], ["plant.mismatch.pitch_factor"]),
         (
             ["plant.mismatch.sag_mm=1", "plant.disturbance.length_std_mm=1"],
-            ["plant.mismatch", "one of disturbance, mismatch and recorded"],
+            ["plant.mismatch", "one of disturbance, mismatch, recorded, physics and calibrated"],
         ),
+        (["plant.calibrated.compensated=true"], ["plant.calibrated", "[fitted]", "hachen2025"]),
+        (["plant.physics.payload_g=-1"], ["plant.physics.payload_g"]),
+        (
+            ["plant.physics.walls=true", "plant.encoder_step_mm=1"],
+            ["plant.encoder_step", "physics"],
+        ),
+        (["control.taut.floor_n=0"], ["control.taut.floor_n"]),
         (["plant.recorded.csv=nowhere.csv"], ["plant.recorded.csv", "nothing at"]),
         (["plant.recorded.csv=free_space.toml"], ["row 1", "t_s"]),
     ],

@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from sinuous.calibration.calibrate import calibrate
     from sinuous.control.cable_loop import CableLoop
     from sinuous.control.dls import DampedLeastSquares
     from sinuous.control.geometric_ik import GeometricIK, IKStatus
@@ -19,15 +20,21 @@ if TYPE_CHECKING:
     from sinuous.control.pid import Pid
     from sinuous.control.projected import ProjectedTarget
     from sinuous.control.report import Command, Report, Status
+    from sinuous.control.tension import TautCables
+    from sinuous.control.tension_estimate import BackboneTensions
     from sinuous.control.transmission import Transmission
     from sinuous.errors import InputError
     from sinuous.geometry import shapes
     from sinuous.geometry.mesh import check_mesh
     from sinuous.geometry.safe_zone import SafeZone
     from sinuous.measurement import Measurement
+    from sinuous.plants.calibrated import CalibratedPlant
+    from sinuous.plants.compensated import CompensatedPlant
     from sinuous.plants.fibre import Fibre, ShapeSensing
     from sinuous.plants.kinematic import Disturbance, KinematicPlant
     from sinuous.plants.mismatched import Mismatch, MismatchedPlant
+    from sinuous.plants.physics.plant import PhysicsPlant
+    from sinuous.plants.physics.walls import Walls
     from sinuous.plants.recorded import RecordedPlant, read_record_csv
     from sinuous.plants.sensors import Accuracy, ShapeTracker, Timing, TipTracker
     from sinuous.reach import Reach, reaches
@@ -65,11 +72,14 @@ if TYPE_CHECKING:
 
 _HOME = {
     "Accuracy": "sinuous.plants.sensors",
+    "BackboneTensions": "sinuous.control.tension_estimate",
     "Bilateral": "sinuous.teleop.bilateral",
     "BoxForce": "sinuous.teleop.boundary",
     "BurstLoss": "sinuous.teleop.losses",
     "CableLoop": "sinuous.control.cable_loop",
+    "CalibratedPlant": "sinuous.plants.calibrated",
     "Command": "sinuous.control.report",
+    "CompensatedPlant": "sinuous.plants.compensated",
     "ConstantDelay": "sinuous.teleop.link",
     "Costs": "sinuous.control.mpc",
     "DampedLeastSquares": "sinuous.control.dls",
@@ -108,6 +118,7 @@ _HOME = {
     "Outages": "sinuous.teleop.losses",
     "PassivityControl": "sinuous.teleop.passivity",
     "PccRobot": "sinuous.robots.pcc",
+    "PhysicsPlant": "sinuous.plants.physics.plant",
     "Pid": "sinuous.control.pid",
     "PositionForce": "sinuous.teleop.position_force",
     "Prescribed": "sinuous.teleop.operators",
@@ -130,6 +141,7 @@ _HOME = {
     "StandardWaves": "sinuous.teleop.waves",
     "Status": "sinuous.control.report",
     "Steady": "sinuous.teleop.delays",
+    "TautCables": "sinuous.control.tension",
     "Timing": "sinuous.plants.sensors",
     "TipTracker": "sinuous.plants.sensors",
     "Together": "sinuous.teleop.force",
@@ -137,9 +149,11 @@ _HOME = {
     "Transmission": "sinuous.control.transmission",
     "UniformJitter": "sinuous.teleop.delays",
     "Varying": "sinuous.teleop.delays",
+    "Walls": "sinuous.plants.physics.walls",
     "When": "sinuous.control.offset_free",
     "ZeroFill": "sinuous.teleop.receivers",
     "ZoneForce": "sinuous.teleop.boundary",
+    "calibrate": "sinuous.calibration.calibrate",
     "check_mesh": "sinuous.geometry.mesh",
     "follow": "sinuous.scenario.path",
     "load_robot": "sinuous.robots.robot_file",
@@ -162,11 +176,14 @@ _OTHER_NAME = {"read_recording": "read"}
 
 __all__ = [
     "Accuracy",
+    "BackboneTensions",
     "Bilateral",
     "BoxForce",
     "BurstLoss",
     "CableLoop",
+    "CalibratedPlant",
     "Command",
+    "CompensatedPlant",
     "ConstantDelay",
     "Costs",
     "DampedLeastSquares",
@@ -205,6 +222,7 @@ __all__ = [
     "Outages",
     "PassivityControl",
     "PccRobot",
+    "PhysicsPlant",
     "Pid",
     "PositionForce",
     "Prescribed",
@@ -227,6 +245,7 @@ __all__ = [
     "StandardWaves",
     "Status",
     "Steady",
+    "TautCables",
     "Timing",
     "TipTracker",
     "Together",
@@ -234,9 +253,11 @@ __all__ = [
     "Transmission",
     "UniformJitter",
     "Varying",
+    "Walls",
     "When",
     "ZeroFill",
     "ZoneForce",
+    "calibrate",
     "check_mesh",
     "follow",
     "load_robot",

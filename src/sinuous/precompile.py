@@ -9,6 +9,7 @@ from sinuous.geometry import shapes
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.plants.fibre import ShapeSensing
 from sinuous.plants.kinematic import KinematicPlant
+from sinuous.robots.elastic import ElasticModel
 from sinuous.robots.robot_file import load_jointed, load_robot
 from sinuous.teleop.bilateral import Bilateral
 from sinuous.teleop.boundary import BoxForce, ZoneForce
@@ -40,7 +41,25 @@ def precompile() -> None:
         _, command = mpc.step(state, target=into_the_wall)
         plant = ShapeSensing(robot=robot).on(KinematicPlant(robot, seed=0), 0)
         plant.step(command.rates, DT)
+    _statics()
     _by_hand()
+
+
+def _statics() -> None:
+    """An elastic segment, at rest and moved."""
+    angles = np.deg2rad([0.0, 120.0, 240.0])
+    model = ElasticModel(
+        lengths=np.full(1, LENGTH),
+        segment=np.zeros(3, dtype=np.int64),
+        holes=RADIUS * np.stack([np.cos(angles), np.sin(angles)], axis=1),
+        twist=np.zeros(1),
+        stiffness=np.full(3, 1e6),
+        slack=np.zeros(3),
+        rest=np.zeros((1, 2)),
+        friction=np.zeros(1),
+    )
+    model.trace(np.zeros((2, 3)))
+    model.at_rest(np.zeros(3))
 
 
 def _by_hand() -> None:

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from sinuous.arrays import Array, BoolArray, IntArray
+from sinuous.calibration.descent import least_squares
 from sinuous.calibration.problem import Problem
 
 # Errors beyond this many times the usual count by their size, not by their square.
@@ -15,7 +15,6 @@ HUBER = 3.0
 STEP = 1e-4
 MOST_ITERATIONS = 30
 SCREENING = 4
-TOLERANCE = 1e-4
 # What one expects of errors before they are known: size [m], and rows over which they last.
 FIRST_NOISE, FIRST_MEMORY = 3e-3, 10.0
 LEAST_NOISE = 1e-5
@@ -131,27 +130,22 @@ def _minimise(
         errors = problem.residuals(middle + y * spread)[rows] / noise.size
         return np.concatenate([_robust(errors).ravel() / np.sqrt(noise.memory), y])
 
-    def jacobian(y: Array) -> Array:
+    def jacobian(y: Array, here: Array) -> Array:
         observe("fitting")
-        here, out = residuals(y), np.empty((3 * len(rows) + len(y), len(y)))
+        out = np.empty((len(here), len(y)))
         for k in range(len(y)):
             moved = y.copy()
             moved[k] += STEP
             out[:, k] = (residuals(moved) - here) / STEP
         return out
 
-    bounds = ((low - middle) / spread, (high - middle) / spread)
-    inside = np.clip((start - middle) / spread, bounds[0] + STEP, bounds[1] - STEP)
-    found = least_squares(
-        residuals, inside, jac=jacobian, bounds=bounds, max_nfev=most,  # pyright: ignore[reportArgumentType]
-        xtol=TOLERANCE, ftol=TOLERANCE, gtol=None,
-    )  # fmt: skip
-    J = np.asarray(found.jac, dtype=float)
+    low, high = (low - middle) / spread, (high - middle) / spread
+    found = least_squares(residuals, jacobian, (start - middle) / spread, low, high, most=most)
     return Fit(
-        x=middle + found.x * spread,
-        covariance=np.linalg.inv(J.T @ J) * np.outer(spread, spread),
+        x=middle + found.y * spread,
+        covariance=np.linalg.inv(found.normal) * np.outer(spread, spread),
         noise=noise,
-        cost=float(found.cost),
+        cost=found.cost,
     )
 
 

@@ -16,9 +16,8 @@ from sinuous.plants.plant import Plant
 from sinuous.robots.pcc import PccRobot
 
 DT = 1 / 30
-PERIOD = 20.0  # of one turn [s]
-# Radius and height of the ring, as shares of the robot's length.
-RADIUS, HEIGHT = 0.3, 0.9
+PERIOD, RADIUS = 20.0, 0.3  # time of one turn [s], radius as a share of the robot's length
+DROP = 1 / 3  # by which the ring lies below the straight tip, as a share of its radius
 HORIZON = 2
 
 
@@ -35,13 +34,13 @@ class Tracked:
     worst: float
 
 
-def ring(robot: PccRobot) -> Array:
+def ring(robot: PccRobot, *, radius: float = RADIUS, period: float = PERIOD) -> Array:
     """Targets (K, 3) [m] of two turns on a ring around the axis of the base."""
     length = sum(segment.home_length for segment in robot.segments)
-    angle = 2.0 * np.pi * np.arange(0.0, 2.0 * PERIOD, DT) / PERIOD
-    here = length * np.stack(
-        [RADIUS * np.cos(angle), RADIUS * np.sin(angle), np.full_like(angle, HEIGHT)], axis=1
-    )
+    angle = 2.0 * np.pi * np.arange(0.0, 2.0 * period, DT) / period
+    height = np.full_like(angle, 1.0 - DROP * radius)
+    across = radius * np.stack([np.cos(angle), np.sin(angle)])
+    here = length * np.stack([*across, height], axis=1)
     return np.asarray(here @ robot.T_w_b[:3, :3].T + robot.T_w_b[:3, 3])
 
 
@@ -50,7 +49,15 @@ def nominal(robot: PccRobot, preset: PccRobot) -> PccRobot:
     return replace(preset, tool=robot.tool, T_w_b=robot.T_w_b)
 
 
-def track(model: PccRobot, real: PccRobot, *, feedback: bool, compensated: bool = False) -> Tracked:
+def track(
+    model: PccRobot,
+    real: PccRobot,
+    *,
+    feedback: bool,
+    compensated: bool = False,
+    radius: float = RADIUS,
+    period: float = PERIOD,
+) -> Tracked:
     """Follow the ring with a controller that knows `model`, on the plant of `real`.
 
     Arguments:
@@ -59,6 +66,7 @@ def track(model: PccRobot, real: PccRobot, *, feedback: bool, compensated: bool 
         feedback: whether the controller sees the tip, and learns what the model is wrong by;
             without, it plans alone
         compensated: whether the motors make up for what elastic cables lose (`CompensatedPlant`)
+        radius, period: of the ring, a share of the length, and [s]
 
     Returns:
         errors of the second turn
@@ -73,7 +81,7 @@ def track(model: PccRobot, real: PccRobot, *, feedback: bool, compensated: bool 
     if compensated and real.fitted is not None:
         plant = CompensatedPlant(plant, robot=model, model=real.fitted.model)
     state, measured, errors = controller.init(model.home), None, list[float]()
-    for target in ring(real):
+    for target in ring(real, radius=radius, period=period):
         state, command = controller.step(state, target, measured)
         seen = plant.step(command.rates, DT)
         measured = Measurement(tip=seen.tip, lengths=seen.lengths)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sinuous.arrays import Array
+from sinuous.arrays import Array, ArrayLike
 from sinuous.measurement import Measurement
 from sinuous.plants.plant import Plant, Truth
 from sinuous.robots.elastic import ElasticModel
@@ -20,12 +20,20 @@ class CompensatedPlant:
         plant: at rest, its `lengths` those of the motors
         robot: the controller's model, with the plant's actuators
         model: the statics that were found
+        start: configuration (n,) in which the plant is, by default the robot's home
     """
 
-    def __init__(self, plant: Plant, *, robot: PccRobot, model: ElasticModel) -> None:
+    def __init__(
+        self,
+        plant: Plant,
+        *,
+        robot: PccRobot,
+        model: ElasticModel,
+        start: ArrayLike | None = None,
+    ) -> None:
         self._plant, self._robot, self._model = plant, robot, model
         self._straight = robot.lengths(np.zeros(len(robot.coordinate_names)))
-        self._lengths = robot.lengths(robot.home)
+        self._lengths = robot.lengths(robot.home if start is None else start)
         self._motors = plant.truth.lengths
 
     @property

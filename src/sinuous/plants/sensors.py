@@ -80,9 +80,7 @@ class Sensor:
         while self._waiting and self._waiting[0][0] + self._timing.delay <= soon:
             self._shown = self._waiting.popleft()
         taken, reading = self._shown
-        return replace(
-            reading, lengths=now.lengths, tensions=now.tensions, age=self._now - taken
-        )
+        return replace(reading, lengths=now.lengths, tensions=now.tensions, age=self._now - taken)
 
 
 @dataclass(frozen=True, kw_only=True)

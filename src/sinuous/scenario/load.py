@@ -13,7 +13,6 @@ from sinuous.robots.robot import Robot
 from sinuous.robots.robot_file import robot_path
 from sinuous.scenario.control_tables import LawChoice
 from sinuous.scenario.law import law_of
-from sinuous.scenario.physics import Physics
 from sinuous.scenario.plant_tables import SensorChoice
 from sinuous.scenario.scenario import Scenario
 from sinuous.scenario.seen import disturbance_of, mismatch_of, sensor_of
@@ -61,10 +60,8 @@ def load_scenario(path: str | Path, *, set: Iterable[str] = ()) -> Scenario:
         posed = source.posed(robot, way[0].at(0.0))  # also shows that there is a solution
         start = posed if start is None else start
     first = robot.home if start is None else start
-    physics = table.plant.physics and Physics(
-        table=table.plant.physics, robot=robot, zone=mpc.zone, start=first
-    )
-    seen = table.sensor is not None or recorded is not None or physics is not None
+    plant = recorded or source.plant(table.plant, mpc, first)
+    seen = table.sensor is not None or plant is not None
     return Scenario(
         name=table.name,
         mpc=mpc,
@@ -76,7 +73,7 @@ def load_scenario(path: str | Path, *, set: Iterable[str] = ()) -> Scenario:
         disturbance=disturbance_of(table.plant.disturbance),
         mismatch=mismatch_of(table.plant.mismatch),
         encoder_step=table.plant.encoder_step,
-        plant=recorded or physics,
+        plant=plant,
         sensor=sensor_of(table.sensor, robot),
         teleop=source.teleop(table.teleop, mpc, first, table.seed),
         file=str(path),

@@ -83,6 +83,13 @@ class PhysicsTable:
 
 
 @dataclass(frozen=True, kw_only=True)
+class CalibratedTable:
+    """`[plant.calibrated]`: the robot as `sinuous calibrate` found it, by its file's `[fitted]`."""
+
+    compensated: bool = False  # its motors also pull what the cables stretch by
+
+
+@dataclass(frozen=True, kw_only=True)
 class PlantTable:
     """`[plant]`: what stands in for the robot: by default its model, exact or disturbed."""
 
@@ -90,21 +97,22 @@ class PlantTable:
     mismatch: MismatchTable | None = None
     recorded: RecordedTable | None = None
     physics: PhysicsTable | None = None
+    calibrated: CalibratedTable | None = None
     encoder_step: Annotated[Length, _NotNegative] = 0.0  # above zero nothing else is measured
 
     def __post_init__(self) -> None:
-        kinds = ("disturbance", "mismatch", "recorded", "physics")
-        given = [name for name in kinds if getattr(self, name)]
+        kinds = ("disturbance", "mismatch", "recorded", "physics", "calibrated")
+        given = [name for name in kinds if getattr(self, name) is not None]
         if len(given) > 1:
             raise FieldError(
                 given[1],
-                expected="one of disturbance, mismatch, recorded and physics",
+                expected="one of disturbance, mismatch, recorded, physics and calibrated",
                 remedy="Each is a plant of its own: keep one of them.",
             )
-        if self.encoder_step > 0.0 and (self.mismatch or self.recorded or self.physics):
+        if self.encoder_step > 0.0 and set(given) - {"disturbance"}:
             raise FieldError(
                 "encoder_step",
-                expected="none with a mismatch, a record or physics",
+                expected=f"none with {given[0]}",
                 remedy="Their encoders are exact, or read as recorded: take it out.",
             )
 

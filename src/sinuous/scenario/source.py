@@ -18,12 +18,14 @@ from sinuous.errors import InputError
 from sinuous.files import did_you_mean, read_path_csv
 from sinuous.geometry.mesh import read_mesh
 from sinuous.geometry.safe_zone import SafeZone
+from sinuous.plants.plant import Plant
 from sinuous.plants.recorded import RecordedPlant, read_record_csv
 from sinuous.robots.jointed import JointedRobot
 from sinuous.robots.robot import Robot
 from sinuous.robots.robot_file import load_robot, preset_names
 from sinuous.scenario.path import Leg, timed_path, waypoints
-from sinuous.scenario.plant_tables import RecordedTable
+from sinuous.scenario.plant_tables import PlantTable, RecordedTable
+from sinuous.scenario.plants import plant_of
 from sinuous.scenario.tables import PathTable, RobotChoice, ZoneTable
 from sinuous.scenario.teleop import Teleoperation
 from sinuous.scenario.teleop_tables import TeleopTable
@@ -166,6 +168,21 @@ class Source:
         self.found("plant.recorded.csv", path)
         record = read_record_csv(path, robot)
         return partial(RecordedPlant, robot, record, coil=table.coil)
+
+    def plant(
+        self, table: PlantTable, mpc: ShapeConstrainedMPC, start: Array
+    ) -> Callable[[], Plant] | None:
+        """What makes a plant that is more than kinematics, None for none."""
+        try:
+            return plant_of(table, mpc.robot, mpc.zone, start)
+        except ValueError as error:
+            raise InputError(
+                file=self.file,
+                field="plant.calibrated",
+                expected=str(error),
+                found=f"{mpc.robot.name}, which has none",
+                remedy="Name the file that sinuous calibrate wrote in robot.file.",
+            ) from error
 
     def teleop(
         self, table: TeleopTable | None, mpc: ShapeConstrainedMPC, start: Array, seed: int
