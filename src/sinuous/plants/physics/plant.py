@@ -124,7 +124,7 @@ class PhysicsPlant:
         self._lengths, self.contacts = motors[-1], done.contacts
         # Robot and motors at the start of every tick.
         wound, winding = (
-            np.vstack([a, b[:-1]]) for a, b in zip(before, (wound, winding), strict=True)
+            np.concatenate([a[None], b[:-1]]) for a, b in zip(before, (wound, winding), strict=True)
         )
         stretch = done.lengths - wound + cable.pretension
         pull = cable.stiffness * stretch + cable.damping * (done.speeds - winding)

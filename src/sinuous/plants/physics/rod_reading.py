@@ -13,6 +13,9 @@ from sinuous.robots.layout import Layout
 from sinuous.robots.parts import CableConvention
 from sinuous.robots.pcc import PccRobot
 
+STRAIGHT = (
+    1e-8  # a link bent by less counts as bent by that, so that nothing is divided by zero [rad]
+)
 ROUNDING = 1e-9  # a point so little beyond a frame lies at it, as a share of a link
 
 
@@ -97,9 +100,10 @@ class RodReading:
         g sin(t/2) / (m tan(x)) with x = t / (2 m).
         """
         bends, lengths = self._bends(c), self._lengths(c)
-        x = 0.5 * np.sqrt(np.sum(bends * bends, axis=-1)) / self._links
-        chords = lengths * np.sinc(self._per_gap * x / np.pi)
-        return (chords * (np.cos(x) / np.sinc(x / np.pi) - 1.0)) @ self._passes
+        m, bend = self._per_gap, np.sqrt(np.sum(bends * bends, axis=-1))
+        x = np.maximum(0.5 * bend / self._links, STRAIGHT)
+        chords = lengths * np.sin(m * x) / m
+        return (chords * (np.cos(x) / np.sin(x) - 1.0 / x)) @ self._passes
 
     @property
     def _per_gap(self) -> int:
@@ -174,8 +178,10 @@ class RodReading:
         where, along = np.vstack([mount, places]), np.vstack([directions[:1], directions])
         chord = where[1:] - where[:-1]
         # The cubic starts and ends with tangents as long as its arc, here to second order.
-        length = np.sqrt(np.einsum("ij,ij->i", chord, chord))
-        return spans.places @ where + (spans.tangents * length[spans.first]) @ along
+        length = np.sqrt(np.einsum("ij,ij->i", chord, chord))[spans.first, None]
+        first, second, (start, leaves, end, arrives) = spans.first, spans.first + 1, spans.weights
+        tangents = leaves * along[first] + arrives * along[second]
+        return start * where[first] + end * where[second] + length * tangents
 
     @cached_property
     def _spans(self) -> "_Spans":
@@ -192,16 +198,11 @@ class RodReading:
         first = start[chain.section] + cell
         u, zero = along - cell, np.zeros(len(cell))
         weights = np.where(arc, cubic(u), [1.0 - u, zero, u, zero])
-        places = np.zeros((len(first), int(np.sum(links)) + 3))
-        tangents, rows = np.zeros_like(places), np.arange(len(first))
-        places[rows, first], tangents[rows, first] = weights[0], weights[1]
-        places[rows, first + 1], tangents[rows, first + 1] = weights[2], weights[3]
-        return _Spans(places=places, tangents=tangents, first=first[:, None])
+        return _Spans(first=first, weights=weights[:, :, None])
 
 
 class _Spans(NamedTuple):
-    """Weights (S, N + 3) of places and of tangents of frames; the first of the two (S, 1)."""
+    """The first of the two frames (S,) beside each point; weights (4, S, 1) as `cubic` has them."""
 
-    places: Array
-    tangents: Array
     first: IntArray
+    weights: Array
