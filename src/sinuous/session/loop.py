@@ -98,7 +98,7 @@ class _Loop:
         assert self._measured is not None
         self._steps += steps
         truth = self._plant.truth
-        if not _finite(self._measured, truth):
+        if not is_finite(self._measured, truth):
             raise PlantFault("it measured something that is not a finite number")
         sample = _sample(
             self._scenario,
@@ -157,14 +157,15 @@ class Rest:
         return self._still >= self._enough
 
 
-def _slack(robot: Robot, tensions: Array) -> Iterator[str]:
+def slack_cables(robot: Robot, tensions: Array) -> Iterator[str]:
     """Cables without tension, as far as tensions (C,) [N] are known."""
     if len(tensions):
         for row in cable_rows(robot)[tensions <= 0.0]:
             yield f"{robot.actuator_names[row]} is slack"
 
 
-def _finite(measured: Measurement, truth: Truth) -> bool:
+def is_finite(measured: Measurement, truth: Truth) -> bool:
+    """Whether all that is measured, and all that is true, can be computed with."""
     values = (
         measured.points,
         measured.tip,
@@ -216,7 +217,7 @@ def _sample(
         iterations=report.iterations,
         planes=report.planes,
         step_fraction=report.step_fraction,
-        active=(*(active.name for active in report.active), *_slack(robot, known)),
+        active=(*(active.name for active in report.active), *slack_cables(robot, known)),
         tensions=truth.tensions,
         contacts=np.array(contacts),
         signals=signals,

@@ -4,6 +4,10 @@ from sinuous.papers.hachen2025.claims import CLAIMS
 from sinuous.papers.hachen2025.convergence.experiment import CONVERGENCE
 from sinuous.papers.hachen2025.hardware.experiment import HARDWARE
 from sinuous.papers.hachen2025.horizons.experiment import HORIZONS_EXPERIMENT
+from sinuous.papers.hachen2025.physics.hardware import HARDWARE_PHYSICS
+from sinuous.papers.hachen2025.physics.loop import PHYSICS
+from sinuous.papers.hachen2025.physics.tension import TENSION
+from sinuous.papers.hachen2025.physics.verdicts import VERDICTS as ON_PHYSICS
 from sinuous.papers.hachen2025.printed import PRINTED_READINGS
 from sinuous.papers.hachen2025.shape_sensing.experiment import SHAPE_SENSING
 from sinuous.papers.hachen2025.stability.experiment import STABILITY
@@ -26,8 +30,11 @@ HACHEN2025 = Paper(
         STABILITY,
         UNREACHABLE,
         HARDWARE,
+        HARDWARE_PHYSICS,
+        PHYSICS,
+        TENSION,
         SHAPE_SENSING,
         HORIZONS_EXPERIMENT,
     ),
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ON_PHYSICS),
 )

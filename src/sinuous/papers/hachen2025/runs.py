@@ -34,7 +34,12 @@ def held(base: Scenario, target: Array, duration: float, seed: int) -> Recording
 
 
 def sampled_targets(robot: Robot, count: int, seed: int) -> Array:
-    """Tips (count, 3) [m] of random configurations that the robot's limits allow.
+    """Tips (count, 3) [m] of random configurations that the robot's limits allow."""
+    return np.array([robot.tip(c) for c in sampled_configurations(robot, count, seed)])
+
+
+def sampled_configurations(robot: Robot, count: int, seed: int) -> Array:
+    """Random configurations (count, n) that the robot's limits allow.
 
     Segments bend by normally distributed angles and have normally distributed lengths.
     """
@@ -47,5 +52,5 @@ def sampled_targets(robot: Robot, count: int, seed: int) -> Array:
         c = robot.home + spread * rng.normal(size=len(spread))
         lengths = robot.lengths(c)
         if np.all((lengths >= low) & (lengths <= high)) and np.min(robot.bend_slack(c)) >= 0.0:
-            found.append(robot.tip(c))
+            found.append(c)
     return np.array(found)

@@ -4,6 +4,8 @@ from sinuous.papers.qin2020.channel import CHANNEL
 from sinuous.papers.qin2020.claims import CLAIMS
 from sinuous.papers.qin2020.drift import DRIFT
 from sinuous.papers.qin2020.kinematics.experiment import KINEMATICS
+from sinuous.papers.qin2020.physics.experiment import SETS_ON_PHYSICS
+from sinuous.papers.qin2020.physics.verdicts import VERDICTS as ON_PHYSICS
 from sinuous.papers.qin2020.scattering import SCATTERING
 from sinuous.papers.qin2020.sets.experiment import THE_SETS
 from sinuous.papers.qin2020.signs.experiment import SIGNS
@@ -19,9 +21,10 @@ QIN2020 = Paper(
         SCATTERING,
         CHANNEL,
         THE_SETS,
+        SETS_ON_PHYSICS,
         SIGNS,
         TRANSPARENCY,
         DRIFT,
     ),
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ON_PHYSICS),
 )

@@ -30,19 +30,20 @@ def draw(data: Data, folder: Path) -> list[Path]:
     ):
 
         def goals(figure: Figure, test: str = test, title: str = title) -> None:
-            _goals(figure, title, {c: shown[test, c] for c in (PAPERS, OURS)}, switches)
+            draw_goals(figure, title, {c: shown[test, c] for c in (PAPERS, OURS)}, switches)
 
         made.append(save(folder / f"{name}.png", (10.0, 8.0), goals))
     boundary = {c: shown["boundary", c] for c in (PAPERS, OURS)}
     margin = rows[0]["margin_m"] * MM_PER_M
     made.append(
-        save(folder / "fig13_boundary.png", (10.0, 4.6), lambda f: _held(f, boundary, margin))
+        save(folder / "fig13_boundary.png", (10.0, 4.6), lambda f: draw_held(f, boundary, margin))
     )
-    made.append(save(folder / "all_robots.png", (10.0, 4.6), lambda f: _all(f, rows)))
+    made.append(save(folder / "all_robots.png", (10.0, 4.6), lambda f: draw_all(f, rows)))
     return made
 
 
-def _goals(figure: Figure, title: str, curves: dict[str, Any], switches: np.ndarray) -> None:
+def draw_goals(figure: Figure, title: str, curves: dict[str, Any], switches: np.ndarray) -> None:
+    """Errors of both controllers over time, and inputs; lines where goals change [s]."""
     figure.suptitle(title, weight="bold")
     panels = figure.subplots(3, 1, sharex=True, height_ratios=(1.4, 1.4, 1.0))
     for axes, (name, found) in zip(panels, curves.items(), strict=False):
@@ -72,7 +73,8 @@ def _goals(figure: Figure, title: str, curves: dict[str, Any], switches: np.ndar
     panels[2].legend(loc="upper right", ncols=2)
 
 
-def _held(figure: Figure, curves: dict[str, Any], margin: float) -> None:
+def draw_held(figure: Figure, curves: dict[str, Any], margin: float) -> None:
+    """Room between tip and boundary over time, beside the margin [mm]."""
     axes = figure.subplots()
     axes.set_title("A target beyond the wall: room between tip and boundary")
     for (name, found), color in zip(curves.items(), (VERMILION, GREEN), strict=True):
@@ -93,9 +95,10 @@ def _held(figure: Figure, curves: dict[str, Any], margin: float) -> None:
     axes.legend(loc="upper right")
 
 
-def _all(figure: Figure, rows: Sequence[Row]) -> None:
+def draw_all(figure: Figure, rows: Sequence[Row]) -> None:
+    """Errors at goals and room at the boundary, all rows."""
     error, room = figure.subplots(1, 2)
-    figure.suptitle("All robots, one dot for each robot and goal")
+    figure.suptitle("All runs, one dot for each run and goal")
     goals = [row for row in rows if row["test"] == "goals"]
     _dots(error, goals, "real_error_at_goals_m")
     error.set_ylabel("real tip error at rest [mm]")

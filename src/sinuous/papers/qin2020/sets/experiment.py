@@ -17,6 +17,7 @@ from sinuous.papers.qin2020.sets.signals import AXES, Signals
 from sinuous.papers.workers import Workers
 from sinuous.recording import Recording
 from sinuous.scenario import Scenario
+from sinuous.session import Result
 from sinuous.session import run as run_session
 from sinuous.session.by_hand import ENERGIES, FAULT
 from sinuous.teleop.waves import ModifiedWaves
@@ -53,8 +54,13 @@ def drive(item: Item) -> dict[str, Any]:
     """One run."""
     name, scheme, hand, quick = item
     found = chain(name, scheme, hand, seconds=QUICK_TIME if quick else None)
+    return judged(item, found, run_session(found))
+
+
+def judged(item: Item, found: Scenario, done: Result) -> dict[str, Any]:
+    """The row of a run."""
+    name, scheme, hand, _ = item
     assert found.teleop is not None
-    done = run_session(found)
     recording, delay = done.recording, found.teleop.table.delay
     signals = Signals.of(recording, delay)
     touching = np.any(signals.beyond(BOUNDARY), axis=1)
