@@ -17,6 +17,8 @@ from sinuous.robots.robot import Robot
 SETTLING = 1.0  # for how long the robot comes to rest in its start [s]
 # Walls closer than that, and this many times as far as the body moved in the last step, count [m].
 NEAR, FASTER = 1e-3, 3.0
+FLIP = 0.5  # cables that change by more than that up and down from tick to tick [N] are calmed
+CALMING, FINE = 2.0, 1e-3  # for so long, by such ticks [s]
 ROUNDING = 1e-9  # by which a period may exceed a whole number of ticks
 
 
@@ -40,7 +42,8 @@ class PhysicsPlant:
         payload: mass at the tip [kg]
         tip_force: on the tip, in the world [N]
         start: configuration (n,) that the actuators start from, by default the robot's home
-        tick: longest of the engine's ticks [s]; a step is a whole number of equal ones
+        tick: longest of the engine's ticks [s]; a step is a whole number of equal ones, shorter
+            while cables flip from tick to tick
         tension_sensors: whether tensions are measured
 
     Raises:
@@ -65,10 +68,11 @@ class PhysicsPlant:
             raise ValueError(f"a tick is positive, a payload zero or more, not {tick}, {payload}")
         if not np.all(np.isfinite([*gravity, *tip_force])):
             raise ValueError("gravity and tip force must be finite")
-        self.robot, self.tick = robot, tick
+        self.robot, self.tick = robot, min(tick, TICK)  # to settle
         self._tension_sensors = tension_sensors
         self.fault: PhysicsFault | None = None
         self._body, self._cable = body, body.mechanics
+        self._rough, self._pulls = 0.0, np.zeros((0, len(body.cables)))
         self._slowest, self._fastest = robot.rate_limits.T
         spec = assembled(body, gravity=gravity, payload=payload, walls=walls, tick=tick)
         self._engine = Engine(compiled(spec))
@@ -82,7 +86,7 @@ class PhysicsPlant:
         self._wound = body.cable_lengths(self._lengths)  # the cables behind their play
         body.pose(self._engine.model, self._engine.data, c)
         self._run(np.zeros(len(self._lengths)), SETTLING, near=walls is not None)
-        self.worst_contacts = self.contacts
+        self.tick, self.worst_contacts = tick, self.contacts
         self.truth = self._look()
         self._before = self.truth.points
 
@@ -106,7 +110,8 @@ class PhysicsPlant:
     def _run(self, rates: Array, dt: float, *, near: bool) -> None:
         if self.fault is not None:
             raise self.fault
-        ticks = ceil(dt / self.tick - ROUNDING)
+        longest = min(self.tick, FINE) if self._rough > 0.0 else self.tick
+        ticks = ceil(dt / longest - ROUNDING)
         h = dt / ticks
         motors = self._lengths + np.arange(1, ticks + 1)[:, None] * (h * rates)
         before = self._wound, self._winding
@@ -128,6 +133,7 @@ class PhysicsPlant:
         )
         stretch = done.lengths - wound + cable.pretension
         pull = cable.stiffness * stretch + cable.damping * (done.speeds - winding)
+        self._watch(pull, dt)
         self.tensions = np.maximum(pull[-1], 0.0)
         self.slack = np.asarray(np.any(pull <= 0.0, axis=0))
 
@@ -147,6 +153,18 @@ class PhysicsPlant:
         winding = (wound - before) / h
         self._wound, self._winding = wound[-1], winding[-1]
         return wound, winding
+
+    def _watch(self, pull: Array, dt: float) -> None:
+        """Take short ticks for a while where cables pull in every other tick.
+
+        A long robot of many links does that in some postures with ticks of 3 ms and more: no cable
+        can, and the engine does not notice.
+        """
+        self._rough = max(self._rough - dt, 0.0)
+        self._pulls = np.concatenate([self._pulls, pull])[-4:]
+        change = np.diff(self._pulls, axis=0)
+        if len(change) == 3 and np.any(np.all(change[1:] * change[:-1] < -(FLIP**2), axis=0)):
+            self._rough, self._pulls = CALMING, self._pulls[:0]
 
     def _near_walls(self) -> bool:
         """Whether the robot may touch a wall during the next step: the engine is slower then."""
