@@ -7,7 +7,6 @@ from sinuous.arrays import Array
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.plants.calibrated import CalibratedPlant
 from sinuous.plants.compensated import CompensatedPlant
-from sinuous.plants.physics.build import physical_body
 from sinuous.plants.physics.plant import PhysicsPlant
 from sinuous.plants.physics.walls import Walls
 from sinuous.plants.plant import Plant
@@ -40,7 +39,6 @@ class Physics:
         """
         table, zone = self.table, self.zone
         return PhysicsPlant(
-            physical_body(self.robot),
             self.robot,
             gravity=table.gravity,
             walls=Walls(zone=zone) if table.walls and zone.surfaces else None,

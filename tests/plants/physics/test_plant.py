@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from sinuous.arrays import Array
-from sinuous.plants.physics.build import physical_body
 from sinuous.plants.physics.engine import NO_CONTACT, PhysicsFault
 from sinuous.plants.physics.plant import PhysicsPlant
 from sinuous.robots.jointed import JointedRobot
@@ -23,7 +22,7 @@ STILL = 1e-7  # [m] what a robot at rest moves in a second
 
 
 def plant(robot: JointedRobot = ROBOT, **options: object) -> PhysicsPlant:
-    return PhysicsPlant(physical_body(robot), robot, **options)  # pyright: ignore[reportArgumentType]
+    return PhysicsPlant(robot, **options)  # pyright: ignore[reportArgumentType]
 
 
 def with_cables(**fields: float) -> JointedRobot:

@@ -11,7 +11,6 @@ import pytest
 from sinuous.arrays import Array
 from sinuous.errors import InputError
 from sinuous.plants.physics import plant as plant_module
-from sinuous.plants.physics.build import physical_body
 from sinuous.plants.physics.implicit_springs import ImplicitSprings
 from sinuous.plants.physics.plant import PhysicsPlant
 from sinuous.plants.physics.rod_model import RodBody
@@ -130,7 +129,7 @@ def test_a_longer_segment_bends_more_easily() -> None:
 
 
 def plant(c: Array | None = None, **options: Any) -> PhysicsPlant:
-    return PhysicsPlant(RodBody(robot=ROBOT), ROBOT, start=c, tick=TICK, **options)
+    return PhysicsPlant(ROBOT, start=c, tick=TICK, **options)
 
 
 def test_straight_and_without_weight_all_cables_have_their_pretension() -> None:
@@ -154,10 +153,9 @@ def test_cables_are_slack_in_large_bends(seed: int) -> None:
 
 def test_weight_and_tip_load_pull_it_their_way() -> None:
     level = ROBOT.at([[0.0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]])
-    body = RodBody(robot=level)
-    hanging = PhysicsPlant(body, level, tick=TICK).truth.points[-1]
-    loaded = PhysicsPlant(body, level, tick=TICK, tip_force=(0.0, 0.0, -0.2)).truth.points[-1]
-    payload = PhysicsPlant(body, level, tick=TICK, payload=0.2 / 9.81).truth.points[-1]
+    hanging = PhysicsPlant(level, tick=TICK).truth.points[-1]
+    loaded = PhysicsPlant(level, tick=TICK, tip_force=(0.0, 0.0, -0.2)).truth.points[-1]
+    payload = PhysicsPlant(level, tick=TICK, payload=0.2 / 9.81).truth.points[-1]
     assert loaded[2] < hanging[2] < -1e-4
     np.testing.assert_allclose(payload, loaded, rtol=0, atol=SAME_SHAPE)
 
@@ -187,7 +185,7 @@ def test_damping_takes_springs_as_implicitly_as_discrete_does(
 
 
 def test_long_ticks_stay_stable_and_come_to_rest() -> None:
-    mover = PhysicsPlant(RodBody(robot=ROBOT), ROBOT, tick=0.01, tip_force=(0.2, 0.0, 0.0))
+    mover = PhysicsPlant(ROBOT, tick=0.01, tip_force=(0.2, 0.0, 0.0))
     for rates in moving(60, 0.01):
         mover.step(rates, 0.01)
     for _ in range(40):
@@ -202,9 +200,7 @@ def test_more_links_change_little() -> None:
     c, tips = bent(ROBOT, 5, 0.6), list[Array]()
     for links in (2, 4):
         robot = replace(ROBOT, mechanics=RodMechanics(links_per_gap=links))
-        still = PhysicsPlant(
-            RodBody(robot=robot), robot, start=c, tick=0.01, tip_force=(0.0, 0.2, 0.0)
-        )
+        still = PhysicsPlant(robot, start=c, tick=0.01, tip_force=(0.0, 0.2, 0.0))
         tips.append(still.truth.points[-1])
     assert np.linalg.norm(tips[0] - tips[1]) < 2e-4
 
@@ -245,7 +241,7 @@ def test_cables_that_flip_from_tick_to_tick_are_calmed(
     monkeypatch.setattr(plant_module, "FLIP", flip)
     robot = load_pcc("hachen2025")
     bent = [0.07, 0.173, 0.0642, -0.214, -0.525, 0.0642, -0.1475, -0.362, 0.0642]
-    p = PhysicsPlant(physical_body(robot), robot, tip_force=(0.2, 0.0, 0.0), tick=0.005, start=bent)
+    p = PhysicsPlant(robot, tip_force=(0.2, 0.0, 0.0), tick=0.005, start=bent)
     still = np.zeros(12)
     p.step(still, 1.5)
     rest = p.tensions

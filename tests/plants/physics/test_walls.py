@@ -116,7 +116,7 @@ def test_a_thickness_must_be_one() -> None:
 
 @pytest.mark.parametrize("round", [True, False])
 def test_in_the_middle_nothing_touches(round: bool) -> None:
-    p = PhysicsPlant(physical_body(ROBOT), ROBOT, walls=Walls(zone=passage(round=round)))
+    p = PhysicsPlant(ROBOT, walls=Walls(zone=passage(round=round)))
     for _ in range(10):
         p.step(np.zeros(15), 0.05)
     assert p.worst_contacts == NO_CONTACT
@@ -127,7 +127,7 @@ def test_a_rod_in_the_middle_of_a_tube_touches_nothing(name: str) -> None:
     scenario = load_scenario(EXAMPLES / "scenarios" / f"{name}.toml")
     robot, c = scenario.robot, scenario.first_configuration
     walls = Walls(zone=scenario.zone)
-    p = PhysicsPlant(physical_body(robot), robot, walls=walls, start=c, tick=0.005)
+    p = PhysicsPlant(robot, walls=walls, start=c, tick=0.005)
     p.step(np.zeros(len(robot.actuator_names)), 0.1)
     assert p.worst_contacts == NO_CONTACT
 
@@ -186,7 +186,7 @@ def push(p: PhysicsPlant, *, speed: float, beyond: float) -> Iterator[float]:
 def test_walls_hold_what_pushes_and_push_back(round: bool, edge: float, tick: float) -> None:
     """The tip at 0.2 m/s into the wall, told to go 50 mm beyond."""
     walls = Walls(zone=passage(round=round, edge=edge))
-    p = PhysicsPlant(physical_body(ROBOT), ROBOT, walls=walls, tick=tick)
+    p = PhysicsPlant(ROBOT, walls=walls, tick=tick)
     forces = np.array(list(push(p, speed=0.2, beyond=0.05)))
     assert p.worst_contacts.depth < ALLOWED
     assert p.contacts.depth < 0.2e-3
@@ -206,7 +206,7 @@ SLANTED = 0.05
 def test_the_force_of_a_wall_is_what_virtual_work_says() -> None:
     """J_l(q)' T = J_rim' f at rest, with the rim of the last plate at the flat wall."""
     zone = passage(round=False)
-    p = PhysicsPlant(physical_body(ROBOT), ROBOT, walls=Walls(zone=zone), gravity=(0.0, 0.0, 0.0))
+    p = PhysicsPlant(ROBOT, walls=Walls(zone=zone), gravity=(0.0, 0.0, 0.0))
     list(push(p, speed=0.2, beyond=0.05))
     q = np.zeros(10)
     for _ in range(8):
@@ -226,7 +226,7 @@ def rim(q: Array) -> float:
 
 
 def test_contacts_end_when_the_robot_goes_away_and_the_worst_is_kept() -> None:
-    p = PhysicsPlant(physical_body(ROBOT), ROBOT, walls=Walls(zone=passage(round=True)))
+    p = PhysicsPlant(ROBOT, walls=Walls(zone=passage(round=True)))
     list(push(p, speed=0.2, beyond=0.01))
     worst = p.worst_contacts
     assert worst.total >= worst.largest > 1.0

@@ -7,7 +7,7 @@ import numpy as np
 from sinuous.arrays import Array, ArrayLike
 from sinuous.measurement import NO_TENSIONS, Measurement
 from sinuous.plants.physics.assembly import GRAVITY, TICK, assembled, compiled
-from sinuous.plants.physics.body import PhysicalBody
+from sinuous.plants.physics.build import physical_body
 from sinuous.plants.physics.engine import Engine, PhysicsFault
 from sinuous.plants.physics.implicit_springs import ImplicitSprings
 from sinuous.plants.physics.walls import Walls
@@ -35,8 +35,7 @@ class PhysicsPlant:
     `worst_contacts` that of the whole run. `fault` is what ended the run, if anything did.
 
     Arguments:
-        body: the robot's model
-        robot: the same robot
+        robot: with its mechanics, which say what it is made of
         gravity: in the world [m/s^2]
         walls: what the robot collides with
         payload: mass at the tip [kg]
@@ -48,12 +47,12 @@ class PhysicsPlant:
 
     Raises:
         ValueError: if a number makes no sense
+        InputError: if MuJoCo is not installed, or cannot hold the robot
         PhysicsFault: if the robot cannot even come to rest
     """
 
     def __init__(
         self,
-        body: PhysicalBody,
         robot: Robot,
         *,
         gravity: tuple[float, float, float] = GRAVITY,
@@ -71,7 +70,8 @@ class PhysicsPlant:
         self.robot, self.tick = robot, min(tick, TICK)  # to settle
         self._tension_sensors = tension_sensors
         self.fault: PhysicsFault | None = None
-        self._body, self._cable = body, body.mechanics
+        self._body = body = physical_body(robot)
+        self._cable = body.mechanics
         self._rough, self._pulls = 0.0, np.zeros((0, len(body.cables)))
         self._slowest, self._fastest = robot.rate_limits.T
         spec = assembled(body, gravity=gravity, payload=payload, walls=walls, tick=tick)
