@@ -5,16 +5,16 @@ jumps although the target does not. It is here so that the argument can be teste
 """
 
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from sinuous.arrays import Array, ArrayLike
-from sinuous.control.controller import Controller, ControllerState
+from sinuous.control.around import Around
+from sinuous.control.controller import ControllerState
 from sinuous.control.report import Command
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.measurement import Measurement
-from sinuous.robots.robot import Robot
 
 S = TypeVar("S", bound=ControllerState)
 
@@ -48,7 +48,7 @@ def projected(zone: SafeZone, p: Array, distance: float) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class ProjectedTarget(Generic[S]):
+class ProjectedTarget(Around[S]):
     """Hands a controller the target's projection on where the tip keeps its margin.
 
     A target that has enough clearance passes unchanged. Only the tip's clearance is looked at:
@@ -58,28 +58,6 @@ class ProjectedTarget(Generic[S]):
     Arguments:
         controller: any controller
     """
-
-    controller: Controller[S]
-
-    @property
-    def robot(self) -> Robot:
-        """The controller's."""
-        return self.controller.robot
-
-    @property
-    def zone(self) -> SafeZone:
-        """The room it may use."""
-        return self.controller.zone
-
-    @property
-    def margin(self) -> float:
-        """Least distance between body surface and wall [m]."""
-        return self.controller.margin
-
-    @property
-    def dt(self) -> float:
-        """Time between steps [s]."""
-        return self.controller.dt
 
     def project(self, target: Array) -> Array:
         """The place (3,) [m] that the tip is sent to instead of target (3,) [m]."""

@@ -13,13 +13,12 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from sinuous.arrays import Array, ArrayLike
-from sinuous.control.controller import Controller, ControllerState
+from sinuous.control.around import Around
+from sinuous.control.controller import ControllerState
 from sinuous.control.report import Command
 from sinuous.control.saturation import speed_share
-from sinuous.geometry.safe_zone import SafeZone
 from sinuous.measurement import Measurement
 from sinuous.robots.cables import cable_rows, co_contractions
-from sinuous.robots.robot import Robot
 
 S = TypeVar("S", bound=ControllerState)
 
@@ -46,7 +45,7 @@ class TautState(Generic[S]):
 
 
 @dataclass(frozen=True, eq=False)
-class TautCables(Generic[S]):
+class TautCables(Around[S]):
     """Keeps every cable above a least tension, beside any controller.
 
     Each group of cables that bends nothing when pulled together (`robots.cables`) is pulled in
@@ -70,7 +69,6 @@ class TautCables(Generic[S]):
         ValueError: if a number is not positive
     """
 
-    controller: Controller[S]
     _: KW_ONLY
     floor: float
     stiffness: float
@@ -82,26 +80,6 @@ class TautCables(Generic[S]):
         for name in ("floor", "stiffness", "time_constant", "most"):
             if not 0.0 < getattr(self, name) < np.inf:
                 raise ValueError(f"{name} must be positive and finite, not {getattr(self, name)}")
-
-    @property
-    def robot(self) -> Robot:
-        """The controller's."""
-        return self.controller.robot
-
-    @property
-    def zone(self) -> SafeZone:
-        """The room it may use."""
-        return self.controller.zone
-
-    @property
-    def margin(self) -> float:
-        """Least distance between body surface and wall [m]."""
-        return self.controller.margin
-
-    @property
-    def dt(self) -> float:
-        """Time between steps [s]."""
-        return self.controller.dt
 
     @cached_property
     def _cables(self) -> Array:
