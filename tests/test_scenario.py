@@ -175,7 +175,10 @@ def test_a_scenario_is_checked_when_it_is_built(full: Path) -> None:
         sn.Scenario(name="", mpc=scenario.mpc, path=scenario.path, start=np.zeros(3))
 
 
-BEYOND = ("unreachable", "watchdog", "jointed_teleop", "bad_link")  # whose paths lead into a wall
+BEYOND = (  # whose paths lead into a wall
+    *("unreachable", "watchdog", "jointed_teleop", "bad_link"),
+    *("live_1khz", "live_jointed", "live_watchdog"),
+)
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)

@@ -1,4 +1,4 @@
-"""The command line: `sinuous run`, `sinuous check`, `sinuous compare`."""
+"""The command line: what `sinuous VERB` does."""
 
 from sinuous.cli.main import main
 

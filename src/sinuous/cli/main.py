@@ -11,6 +11,7 @@ import tyro
 from sinuous.cli.arguments import Bench, Check, Compare, Export, Reproduce, Run
 from sinuous.cli.calibrate_arguments import Calibrate
 from sinuous.cli.codes import BAD_INPUT, GOOD, INTERRUPTED
+from sinuous.cli.teleop_arguments import Teleop
 from sinuous.errors import InputError
 
 
@@ -22,7 +23,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     try:
         verb = tyro.cli(
-            Run | Check | Calibrate | Export | Compare | Reproduce | Bench,  # pyright: ignore[reportArgumentType]
+            Run | Teleop | Check | Calibrate | Export | Compare | Reproduce | Bench,  # pyright: ignore[reportArgumentType]
             prog="sinuous",
             description="Steer tendon-driven continuum robots inside a mesh without touching it.",
             args=None if argv is None else list(argv),
@@ -39,12 +40,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         return INTERRUPTED
 
 
-def _call(verb: Run | Check | Calibrate | Export | Compare | Reproduce | Bench) -> int:
+def _call(verb: Run | Teleop | Check | Calibrate | Export | Compare | Reproduce | Bench) -> int:
     match verb:
         case Run():
             from sinuous.cli.run import run
 
             return run(verb)
+        case Teleop():
+            from sinuous.cli.teleop import teleop
+
+            return teleop(verb)
         case Check():
             from sinuous.cli.check import check
 

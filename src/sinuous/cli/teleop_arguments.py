@@ -1,0 +1,36 @@
+"""What `sinuous teleop` takes; the texts here are its manual."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from tyro.conf import FlagCreatePairsOff, Positional, arg
+
+from sinuous.cli.arguments import Assignments
+
+LIVE_SCENARIO = "examples/scenarios/live_watchdog.toml"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Teleop:
+    """Run a scenario in real time, with a hand that moves the tip and feels the wall.
+
+    Exit codes: 0 done, 1 it failed and the robot holds still, 2 bad input, 130 interrupted.
+    """
+
+    scenario: Positional[Annotated[str, arg(metavar="SCENARIO")]] = LIVE_SCENARIO
+    """the scenario's TOML file"""
+    leader: Annotated[str, arg(metavar="{recorded,CSV}")] = "recorded"
+    """the hand: "recorded" follows the scenario's path, over and over again; or a CSV file with
+    columns such as t_s,x_mm,y_mm,z_mm"""
+    duration: Annotated[float | None, arg(metavar="S")] = None
+    """how long to run [s]; by default until Ctrl-C, or 20 s where there is no terminal"""
+    no_browser: FlagCreatePairsOff[bool] = False
+    """run without a page, which is all that this version does"""
+    out: Annotated[str | None, arg(metavar="DIR")] = None
+    """record into a folder; that of an earlier run is overwritten"""
+    json: Annotated[str | None, arg(metavar="FILE")] = None
+    """file for all numbers: lateness of the loops, missed deadlines, margin, memory"""
+    baseline: Annotated[bool, arg()] = False
+    """measure beside the loops one that does nothing: what this machine can do just now"""
+    set: Assignments = ()
+    """change fields of the scenario, such as mpc.horizon=8"""
