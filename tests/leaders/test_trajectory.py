@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from sinuous.errors import InputError
@@ -15,6 +15,7 @@ steps = st.lists(
 )
 
 
+@example([(1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 5e-324)])
 @given(steps)
 def test_it_goes_through_every_row_and_stays_between_them(rows: list[tuple[float, ...]]) -> None:
     table = np.array(rows)

@@ -35,7 +35,8 @@ class Trajectory(Leader):
 
     def __init__(self, times: ArrayLike, places: ArrayLike) -> None:
         t = np.array(times, dtype=np.float64)
-        p = np.array(places, dtype=np.float64)
+        # No slope between places a picometre apart or more is too small to compute with.
+        p = np.round(np.array(places, dtype=np.float64), 12)
         if t.ndim != 1 or t.size < 2 or p.shape != (t.size, 3):
             raise ValueError(
                 f"a trajectory needs times (K,) and places (K, 3), two or more, "

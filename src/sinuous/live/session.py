@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from multiprocessing.connection import Connection
 from queue import Empty, SimpleQueue
+from threading import Event
 from typing import Any
 
 from sinuous.live.act import Act
@@ -15,6 +16,7 @@ from sinuous.live.processes import LeaderMaker
 from sinuous.live.scenario import Recipe
 from sinuous.live.snapshot import Snapshot
 from sinuous.scenario import Scenario
+from sinuous.session.runner import interruptible
 
 
 class LiveEnd(Enum):
@@ -118,15 +120,20 @@ class LiveSession:
             fault = act.get_ready()
             if not fault:
                 self._started(act.scenario)
-            return self._play(act, duration, fault)
+            with interruptible() as interrupted:
+                return self._play(act, duration, fault, interrupted)
         except KeyboardInterrupt:
             return LiveResult(numbers=act.numbers(), end=LiveEnd.INTERRUPTED)
         finally:
             act.close()
 
-    def _play(self, act: Act, duration: float | None, fault: str) -> LiveResult | Reset:
+    def _play(
+        self, act: Act, duration: float | None, fault: str, interrupted: Event
+    ) -> LiveResult | Reset:
         told = False
         while True:
+            if interrupted.is_set():
+                return LiveResult(numbers=act.numbers(), end=LiveEnd.INTERRUPTED)
             fault = fault or act.crew.fault
             if fault and not told:
                 self._failed(fault)

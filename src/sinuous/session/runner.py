@@ -75,7 +75,7 @@ def run(
     header = make_header(scenario)
     samples, end, fault = list[Sample](), End.FINISHED, ""
     opened = nullcontext() if folder is None else folder.record(header)
-    with opened as recorder, _interruptible() as interrupted:
+    with opened as recorder, interruptible() as interrupted:
         started()
         began = perf_counter()
         try:
@@ -108,7 +108,7 @@ def warm_up(scenario: Scenario) -> None:
 
 
 @contextmanager
-def _interruptible() -> Generator[threading.Event]:
+def interruptible() -> Generator[threading.Event]:
     """Let Ctrl-C end the run between two steps; a second one ends it at once."""
     asked = threading.Event()
     if threading.current_thread() is not threading.main_thread():
