@@ -240,7 +240,10 @@ def test_a_small_gain_is_allowed_with_a_warning(tmp_path: Path) -> None:
         sn.run(found)
 
 
-@pytest.mark.parametrize("part", ["plant.mismatch.sag_mm=1", "sensor.kind=fibre"])
+@pytest.mark.parametrize(
+    "part",
+    ["plant.mismatch.sag_mm=1", "sensor.kind=fibre", "control.taut={floor_n=1, estimate=true}"],
+)
 def test_what_is_for_segments_is_refused_for_modules(tmp_path: Path, part: str) -> None:
     with pytest.raises(InputError, match="segments only"):
         scenario(tmp_path, FREE, "robot.file=qin2020", part)

@@ -8,7 +8,7 @@ import pytest
 
 from sinuous.arrays import Array
 from sinuous.control.mpc import ShapeConstrainedMPC
-from sinuous.control.report import Command
+from sinuous.control.report import Command, Status
 from sinuous.control.tension import TautCables
 from sinuous.control.tension_estimate import BackboneTensions
 from sinuous.geometry.safe_zone import SafeZone
@@ -104,6 +104,31 @@ def test_one_slack_cable_pulls_its_own_group_only() -> None:
     own = co_contractions(mpc().robot)[:, 4] > 0.0
     assert np.all(state.pulled[own] > 0.0)
     np.testing.assert_array_equal(state.pulled[~own], 0.0)
+
+
+def test_no_cable_is_pulled_in_beyond_its_limit() -> None:
+    inner = mpc()
+    robot, c = inner.robot, inner.robot.home.copy()
+    c[[2, 5, 8]] = 0.0225  # of a segment; its cables may be 22 mm short
+    taut = TautCables(inner, floor=FLOOR, stiffness=STIFFNESS)
+    room = taut._room(c)
+    np.testing.assert_allclose(room, 0.5e-3)
+    calm = Command(rates=np.zeros(12), report=inner.step(inner.init(robot.home), BENT)[1].report)
+    pulled = np.zeros(3)
+    for _ in range(100):
+        pulled = taut._pulled(pulled, np.full(9, -100.0), calm, room)
+    np.testing.assert_allclose(pulled, room)
+
+
+def test_who_holds_still_does_not_pull() -> None:
+    inner = mpc()
+    taut = TautCables(inner, floor=FLOOR, stiffness=STIFFNESS)
+    lengths = inner.robot.lengths(inner.robot.home)
+    told = Measurement(tip=inner.robot.tip(inner.robot.home), lengths=lengths, tensions=np.zeros(9))
+    state, command = taut.step(taut.init(inner.robot.home), [np.nan, 0.0, 0.1], told)
+    assert command.report.status is Status.HOLDING
+    np.testing.assert_array_equal(command.rates, 0.0)
+    np.testing.assert_array_equal(state.pulled, 0.0)
 
 
 @pytest.mark.parametrize("tensions", [np.zeros(0), np.full(9, np.nan)])

@@ -25,7 +25,5 @@ def test_pulling_a_group_has_no_moment_and_every_cable_is_in_one(name: str) -> N
 
 def test_groups_are_the_cables_of_each_segment() -> None:
     groups = co_contractions(load_robot("hachen2025"))
-    np.testing.assert_allclose(
-        np.sort(groups, axis=0), np.sort(np.kron(np.eye(3), np.ones(3)), axis=0)
-    )
-    assert len(groups) == 3
+    own = np.kron(np.eye(3), np.ones(3))
+    assert {tuple(row) for row in groups} == {tuple(row) for row in own}

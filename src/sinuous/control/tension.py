@@ -15,7 +15,7 @@ import numpy as np
 from sinuous.arrays import Array, ArrayLike
 from sinuous.control.around import Around
 from sinuous.control.controller import ControllerState
-from sinuous.control.report import Command
+from sinuous.control.report import Command, Status
 from sinuous.control.saturation import speed_share
 from sinuous.measurement import Measurement
 from sinuous.robots.cables import cable_rows, co_contractions
@@ -54,8 +54,9 @@ class TautCables(Around[S]):
         d pulled / dt = (floor - least tension) / (stiffness x time constant),  0 <= pulled <= most.
 
     The controller inside reads lengths without what is pulled in, so its model holds, and its
-    rates have priority over the pulling. Tensions are those measured, else those estimated;
-    without either nothing is done.
+    rates have priority over the pulling, limits of length hold for what is pulled in as well, and
+    while the controller holds still nothing is pulled. Tensions are those measured, else those
+    estimated; without either nothing is done.
 
     Arguments:
         controller: any controller
@@ -105,9 +106,10 @@ class TautCables(Around[S]):
             seen = replace(measured, lengths=measured.lengths + shift @ self._cables)
         inner, command = self.controller.step(state.inner, target, seen)
         tensions = self._tensions(inner, measured, shift)
-        if not len(tensions) or not np.all(np.isfinite(tensions)):
+        still = command.report.status is Status.HOLDING
+        if still or not len(tensions) or not np.all(np.isfinite(tensions)):
             return replace(state, inner=inner), command
-        pulled = self._pulled(state.pulled, tensions, command)
+        pulled = self._pulled(state.pulled, tensions, command, self._room(inner.c))
         rates = command.rates - (pulled - state.pulled) @ self._groups @ self._cables / self.dt
         return TautState(inner=inner, pulled=pulled), replace(
             command, rates=rates, tensions=tensions
@@ -119,10 +121,17 @@ class TautCables(Around[S]):
             return measured.tensions
         return np.zeros(0) if self.estimate is None else self.estimate(inner.c, shift)
 
-    def _pulled(self, before: Array, tensions: Array, command: Command) -> Array:
+    def _room(self, c: Array) -> Array:
+        """What each group may be pulled in, so that no cable gets shorter than it may (G,) [m]."""
+        room = self._cables @ (self.robot.lengths(c) - self.robot.length_limits[:, 0])
+        shares = self._groups
+        each = np.where(shares > 0.0, room / np.where(shares > 0.0, shares, 1.0), np.inf)
+        return np.clip(np.min(each, axis=1), 0.0, self.most)
+
+    def _pulled(self, before: Array, tensions: Array, command: Command, room: Array) -> Array:
         """What is pulled in after the step (G,) [m]."""
         least = np.min(np.where(self._groups > 0.0, tensions, np.inf), axis=1)
         speed = (self.floor - least) / (self.stiffness * self.time_constant)
-        change = np.clip(before + self.dt * speed, 0.0, self.most) - before
+        change = np.clip(before + self.dt * speed, 0.0, room) - before
         rates = -change @ self._groups @ self._cables / self.dt
         return before + speed_share(self.robot, rates, command.rates) * change

@@ -86,9 +86,11 @@ def _check_kind(table: ScenarioTable, robot: Robot, file: str) -> None:
     """Refuse parts that are for the other kind of robot."""
     jointed = isinstance(robot, JointedRobot)
     sensor = table.sensor is not None and table.sensor.kind is SensorChoice.FIBRE
+    estimate = table.control.taut is not None and table.control.taut.estimate
     for wrong, field in (
         (jointed and table.plant.mismatch is not None, "plant.mismatch"),
         (jointed and sensor, "sensor.kind"),
+        (jointed and estimate, "control.taut.estimate"),
     ):
         if wrong:
             raise InputError(
