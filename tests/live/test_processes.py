@@ -77,6 +77,18 @@ def test_the_program_tells_its_numbers_and_leaves_nothing(tmp_path: Path) -> Non
     assert len(recording.signals) == 10 * len(recording)
 
 
+def test_a_scenario_that_cannot_run_live_is_one_message_and_leaves_nothing() -> None:
+    program = subprocess.run(
+        [*SINUOUS, "teleop", str(WATCHDOG.parent / "free_space.toml"), "--no-browser"],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+    )
+    assert program.returncode == 2
+    assert "mpc.rate_hz" in program.stderr
+    assert program.stderr.count("\n") == 1  # Python would complain of memory that is left
+
+
 def test_ctrl_c_ends_everything() -> None:
     program, pids = started()  # until somebody ends it: its output is no terminal, so 20 s
     assert len(pids) >= 2

@@ -40,6 +40,7 @@ class Crew:
         self, scenario: Scenario, recipe: Recipe, leader: LeaderMaker, *, baseline: bool
     ) -> None:
         assert scenario.teleop is not None
+        together = ticks_per_step(scenario) == 1  # refused before there is anything to give back
         sizes = Sizes.of(scenario)
         self.board = Board.create(sizes)
         self._processes = list[SpawnProcess]()
@@ -54,7 +55,7 @@ class Crew:
         # A fresh interpreter has no thread and no lock of this one.
         context = get_context("spawn")
         orders, self._orders = context.Pipe(duplex=False)
-        if ticks_per_step(scenario) == 1:
+        if together:
             self._start("both loops", run_together, (seat, orders))
         else:
             heard, kick = context.Pipe(duplex=False)
