@@ -11,6 +11,7 @@ import tyro
 from sinuous.cli.arguments import Bench, Check, Compare, Export, Reproduce, Run
 from sinuous.cli.calibrate_arguments import Calibrate
 from sinuous.cli.codes import BAD_INPUT, GOOD, INTERRUPTED
+from sinuous.cli.replay_arguments import Replay
 from sinuous.cli.teleop_arguments import Teleop
 from sinuous.errors import InputError
 
@@ -23,7 +24,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     try:
         verb = tyro.cli(
-            Run | Teleop | Check | Calibrate | Export | Compare | Reproduce | Bench,  # pyright: ignore[reportArgumentType]
+            Run | Teleop | Replay | Check | Calibrate | Export | Compare | Reproduce | Bench,  # pyright: ignore[reportArgumentType]
             prog="sinuous",
             description="Steer tendon-driven continuum robots inside a mesh without touching it.",
             args=None if argv is None else list(argv),
@@ -40,7 +41,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         return INTERRUPTED
 
 
-def _call(verb: Run | Teleop | Check | Calibrate | Export | Compare | Reproduce | Bench) -> int:
+def _call(
+    verb: Run | Teleop | Replay | Check | Calibrate | Export | Compare | Reproduce | Bench,
+) -> int:
     match verb:
         case Run():
             from sinuous.cli.run import run
@@ -50,6 +53,10 @@ def _call(verb: Run | Teleop | Check | Calibrate | Export | Compare | Reproduce 
             from sinuous.cli.teleop import teleop
 
             return teleop(verb)
+        case Replay():
+            from sinuous.cli.replay import replay
+
+            return replay(verb)
         case Check():
             from sinuous.cli.check import check
 
