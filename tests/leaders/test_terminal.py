@@ -69,7 +69,7 @@ def test_the_terminal_is_put_back_as_it_was(terminal: tuple[int, int]) -> None:
 
 def test_without_a_terminal_the_message_says_so() -> None:
     reading, writing = os.pipe()
-    with pytest.raises(InputError, match="expected a terminal as standard input"):
+    with pytest.raises(InputError, match="expected a terminal, found that there is none"):
         TerminalKeyboard(file=reading).open()
     os.close(reading)
     os.close(writing)

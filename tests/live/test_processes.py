@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from sinuous.cli.teleop import recorded_hand
+from sinuous.cli.teleop_leaders import csv_hand
 from sinuous.live import LiveEnd, LiveSession, PathHand, Recipe, Snapshot
 from sinuous.live.orders import Pause, Reset, SetLink, Stop
 from sinuous.recording import read
@@ -166,7 +166,7 @@ def test_orders_reach_the_loop() -> None:
 
 
 def test_a_device_that_is_not_there_is_said() -> None:
-    nowhere = partial(recorded_hand, "nowhere.csv")
+    nowhere = partial(csv_hand, "nowhere.csv")
     result = LiveSession(Recipe(str(WATCHDOG)), nowhere).run(PATIENCE)
     assert result.end is LiveEnd.FAILED
     assert "the operator's side: nowhere.csv" in result.fault

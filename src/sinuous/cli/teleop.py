@@ -2,7 +2,6 @@
 
 import json
 import sys
-from functools import partial
 from pathlib import Path
 
 from rich.console import Console
@@ -10,13 +9,11 @@ from rich.console import Console
 from sinuous.cli.arguments import assignments
 from sinuous.cli.codes import GOOD, INTERRUPTED, NEGATIVE
 from sinuous.cli.teleop_arguments import Teleop
+from sinuous.cli.teleop_leaders import leader_choice
 from sinuous.cli.teleop_table import print_live
 from sinuous.errors import InputError
 from sinuous.files import write_text
-from sinuous.leaders import Trajectory
-from sinuous.leaders.leader import Leader
-from sinuous.live import LiveEnd, LiveSession, PathHand, Recipe
-from sinuous.scenario import Scenario
+from sinuous.live import LiveEnd, LiveSession, Recipe
 
 CODES = {
     LiveEnd.FINISHED: GOOD,
@@ -31,9 +28,10 @@ def teleop(arguments: Teleop) -> int:
     """Run a scenario in real time and say how it went."""
     console = Console()
     _check(arguments)
+    hand = leader_choice(arguments.leader)
     session = LiveSession(
-        Recipe(arguments.scenario, tuple(assignments(arguments.set))),
-        PathHand if arguments.leader == "recorded" else partial(recorded_hand, arguments.leader),
+        Recipe(arguments.scenario, (*hand.fields, *assignments(arguments.set))),
+        hand.make,
         baseline=arguments.baseline,
         started=lambda scenario: console.print(
             f"Live: {scenario.name}. Ctrl-C ends it.", markup=False, highlight=False
@@ -57,7 +55,7 @@ def _check(arguments: Teleop) -> None:
     """Refuse what would be found out too late, in another process.
 
     Raises:
-        InputError: if the duration is not positive, or the hand's file cannot be used
+        InputError: if the duration is not positive
     """
     if arguments.duration is not None and not 0.0 < arguments.duration < float("inf"):
         raise InputError(
@@ -66,10 +64,3 @@ def _check(arguments: Teleop) -> None:
             found=f"{arguments.duration:g}",
             remedy="Write for example --duration 20.",
         )
-    if arguments.leader != "recorded":
-        Trajectory.load(arguments.leader)
-
-
-def recorded_hand(path: str, scenario: Scenario) -> Leader:
-    """The hand of a CSV file, made in the process that reads it."""
-    return Trajectory.load(path)

@@ -19,9 +19,10 @@ class Teleop:
 
     scenario: Positional[Annotated[str, arg(metavar="SCENARIO")]] = LIVE_SCENARIO
     """the scenario's TOML file"""
-    leader: Annotated[str, arg(metavar="{recorded,CSV}")] = "recorded"
-    """the hand: "recorded" follows the scenario's path, over and over again; or a CSV file with
-    columns such as t_s,x_mm,y_mm,z_mm"""
+    leader: Annotated[str, arg(metavar="HAND")] = "recorded"
+    """the hand: "recorded" follows the scenario's path, over and over again; keyboard (of this
+    terminal), gamepad, spacemouse or haply; a CSV file with columns such as t_s,x_mm,y_mm,z_mm; or
+    a recording (.mcap, or its folder), whose hand moves as it did"""
     duration: Annotated[float | None, arg(metavar="S")] = None
     """how long to run [s]; by default until Ctrl-C, or 20 s where there is no terminal"""
     no_browser: FlagCreatePairsOff[bool] = False

@@ -2,7 +2,6 @@
 
 import os
 import select
-import sys
 from contextlib import suppress
 from types import ModuleType
 from typing import Any
@@ -22,6 +21,7 @@ HELD = 0.15
 first wait of 250 to 500 ms, in which the hand rests."""
 
 SILENCE = 0.1  # how long to wait for a key [s]
+TERMINAL = "/dev/tty"
 
 FINALS = {
     "A": "ArrowUp",
@@ -56,18 +56,24 @@ def keys_in(text: str) -> tuple[list[str], str]:
 class TerminalLine:
     """A terminal that gives away keys as they are pressed, and is put back as it was.
 
+    Control-C stays what it is.
+
     Arguments:
-        file: its descriptor
+        file: its descriptor, which is closed in the end
         termios: the module
     """
 
     def __init__(self, file: int, termios: Any) -> None:
         self._file, self._termios = file, termios
         self._rest = ""
-        self._before = termios.tcgetattr(file)
-        quiet = list(self._before)
-        quiet[3] &= ~(termios.ICANON | termios.ECHO)
-        termios.tcsetattr(file, termios.TCSADRAIN, quiet)
+        try:
+            self._before = termios.tcgetattr(file)
+            quiet = list(self._before)
+            quiet[3] &= ~(termios.ICANON | termios.ECHO)
+            termios.tcsetattr(file, termios.TCSADRAIN, quiet)
+        except termios.error:
+            os.close(file)
+            raise
 
     def wait(self) -> Array | None:
         """Where the last key that was pressed moves the hand (3,)."""
@@ -84,6 +90,7 @@ class TerminalLine:
         """Let the terminal be as it was."""
         with suppress(self._termios.error):  # of a terminal that is closed
             self._termios.tcsetattr(self._file, self._termios.TCSADRAIN, self._before)
+        os.close(self._file)
 
 
 class TerminalKeyboard(Leader):
@@ -91,7 +98,8 @@ class TerminalKeyboard(Leader):
 
     Arguments:
         rates: from keys to motion
-        file: descriptor of the terminal; by default of the standard input
+        file: descriptor of the terminal; by default it is that from which the program was started,
+            also for a process whose standard input is something else
     """
 
     about = About(name="terminal keyboard", axes=AXES, force=ForceKind.NONE, run_on_hardware=None)
@@ -123,14 +131,14 @@ class TerminalKeyboard(Leader):
     def _connect(self) -> TerminalLine:
         termios = _termios()
         try:
-            file = sys.stdin.fileno() if self._file is None else self._file
+            file = os.open(TERMINAL, os.O_RDONLY) if self._file is None else os.dup(self._file)
             return TerminalLine(file, termios)
-        except (OSError, ValueError, termios.error) as error:
+        except (OSError, termios.error) as error:
             raise InputError(
                 file="leader terminal",
-                expected="a terminal as standard input",
-                found="something else",
-                remedy="Start it in a terminal, without a pipe, or use another leader.",
+                expected="a terminal",
+                found="that there is none",
+                remedy="Start it in a terminal, or use another leader.",
             ) from error
 
 
