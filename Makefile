@@ -14,7 +14,7 @@ export MPLBACKEND := Agg
 .PHONY: demo test check lock clean
 
 demo: $(STAMP)
-	$(BIN)/sinuous run examples/scenarios/winding_tube.toml --out out/winding_tube
+	$(BIN)/sinuous teleop
 
 test: $(STAMP)
 	$(BIN)/python -m pytest -n 2

@@ -1,13 +1,12 @@
 """`sinuous replay`: a recorded run on a page."""
 
-import os
 import sys
 import time
-import webbrowser
 from pathlib import Path
 
 from rich.console import Console
 
+from sinuous.cli.browser import check_duration, check_port, open_page
 from sinuous.cli.codes import GOOD
 from sinuous.cli.replay_arguments import Replay
 from sinuous.errors import InputError
@@ -36,8 +35,8 @@ def replay(arguments: Replay) -> int:
     with Page(recorded, port=arguments.port) as page:
         end = "Ctrl-C ends it." if duration is None else f"It ends after {duration:g} s."
         console.print(f"{page.address}  {end}", markup=False, highlight=False, soft_wrap=True)
-        if not arguments.no_browser and _has_display():
-            webbrowser.open(page.address)
+        if arguments.browser:
+            open_page(page.address)
         _play(page, float("inf") if duration is None else duration)
     return GOOD
 
@@ -63,12 +62,6 @@ def _write(recorded: Recorded, out: Path, port: int, console: Console) -> None:
     )  # fmt: skip
 
 
-def _has_display() -> bool:
-    if sys.platform != "linux":
-        return True
-    return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
-
-
 def _check(arguments: Replay) -> None:
     """Refuse what is not meant to work.
 
@@ -79,17 +72,5 @@ def _check(arguments: Replay) -> None:
         raise InputError(
             file="RUN", expected="a recorded run", found="an empty name", remedy="Name one."
         )
-    if arguments.duration is not None and not 0.0 < arguments.duration < float("inf"):
-        raise InputError(
-            file="--duration",
-            expected="a positive number of seconds",
-            found=f"{arguments.duration:g}",
-            remedy="Write for example --duration 20.",
-        )
-    if not 1 <= arguments.port <= 65535:
-        raise InputError(
-            file="--port",
-            expected="a number from 1 to 65535",
-            found=str(arguments.port),
-            remedy="Write for example --port 8080.",
-        )
+    check_duration(arguments.duration)
+    check_port(arguments.port)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from tyro.conf import FlagCreatePairsOff, Positional, arg
+from tyro.conf import Positional, arg
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,5 +21,5 @@ class Replay:
     """of the page on this machine; the next that is free if it is taken"""
     duration: Annotated[float | None, arg(metavar="S")] = None
     """how long to serve it; by default until Ctrl-C, or 20 s where there is no terminal"""
-    no_browser: FlagCreatePairsOff[bool] = False
-    """do not open a browser"""
+    browser: bool = True
+    """open it if there is a display"""

@@ -2,18 +2,21 @@
 
 import json
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 from rich.console import Console
 
 from sinuous.cli.arguments import assignments
+from sinuous.cli.browser import check_duration, check_port, open_page
 from sinuous.cli.codes import GOOD, INTERRUPTED, NEGATIVE
 from sinuous.cli.teleop_arguments import Teleop
-from sinuous.cli.teleop_leaders import leader_choice
+from sinuous.cli.teleop_leaders import GIZMO, RECORDED, leader_choice
 from sinuous.cli.teleop_table import print_live
-from sinuous.errors import InputError
 from sinuous.files import write_text
 from sinuous.live import LiveEnd, LiveSession, Recipe
+from sinuous.view.page.hands import hands_of
+from sinuous.view.page.supervisor import PageSupervisor
 
 CODES = {
     LiveEnd.FINISHED: GOOD,
@@ -28,19 +31,43 @@ def teleop(arguments: Teleop) -> int:
     """Run a scenario in real time and say how it went."""
     console = Console()
     _check(arguments)
-    hand = leader_choice(arguments.leader)
-    session = LiveSession(
-        Recipe(arguments.scenario, (*hand.fields, *assignments(arguments.set))),
-        hand.make,
-        baseline=arguments.baseline,
-        started=lambda scenario: console.print(
-            f"Live: {scenario.name}. Ctrl-C ends it.", markup=False, highlight=False
-        ),
-    )
+    attended = sys.stdout.isatty()
+    name = arguments.leader or (GIZMO if arguments.browser and attended else RECORDED)
+    hand = leader_choice(name)
+    recipe = Recipe(arguments.scenario, (*hand.fields, *assignments(arguments.set)))
     duration = arguments.duration
-    if duration is None and not sys.stdout.isatty():
+    if duration is None and not attended:
         duration = SHOW
-    result = session.run(duration, record=arguments.out)
+    end = "Ctrl-C ends it." if duration is None else f"It ends after {duration:g} s."
+    with ExitStack() as stack:
+        if arguments.browser:
+            page = stack.enter_context(
+                PageSupervisor(
+                    port=arguments.port,
+                    hands=hands_of(name, hand.make),
+                    ready=_Opener(console, end),
+                    lost=_complain,
+                )
+            )
+            session = LiveSession(
+                recipe,
+                hand.make,
+                baseline=arguments.baseline,
+                patient=True,
+                started=page.started,
+                observe=page.observe,
+                failed=lambda fault: _failed(page, fault),
+                refused=page.tell,
+            )
+            page.serve(session)
+        else:
+            session = LiveSession(
+                recipe,
+                hand.make,
+                baseline=arguments.baseline,
+                started=lambda scenario, _: _say(console, f"Live: {scenario.name}. {end}"),
+            )
+        result = session.run(duration, record=arguments.out)
     print_live(console, result.numbers)
     if arguments.json is not None:
         numbers = {**result.numbers, "end": result.end.name.lower(), "fault": result.fault}
@@ -51,16 +78,42 @@ def teleop(arguments: Teleop) -> int:
     return CODES[result.end]
 
 
+class _Opener:
+    """Says where the page is, and opens it the first time.
+
+    Arguments:
+        console: to say it
+        end: what ends the session
+    """
+
+    def __init__(self, console: Console, end: str) -> None:
+        self._console, self._end, self._opened = console, end, False
+
+    def __call__(self, address: str) -> None:
+        _say(self._console, f"{address}  {self._end}")
+        if not self._opened:
+            self._opened = True
+            open_page(address)
+
+
+def _failed(page: PageSupervisor, fault: str) -> None:
+    _complain(f"{fault}; the robot holds still: Reset on the page, or Ctrl-C")
+    page.tell(f"{fault}\nThe robot holds still. Reset begins again.", lasting=True)
+
+
+def _say(console: Console, text: str) -> None:
+    console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def _complain(text: str) -> None:
+    print(f"sinuous: {text}", file=sys.stderr, flush=True)
+
+
 def _check(arguments: Teleop) -> None:
     """Refuse what would be found out too late, in another process.
 
     Raises:
-        InputError: if the duration is not positive
+        InputError: if duration or port cannot be
     """
-    if arguments.duration is not None and not 0.0 < arguments.duration < float("inf"):
-        raise InputError(
-            file="--duration",
-            expected="a positive number of seconds",
-            found=f"{arguments.duration:g}",
-            remedy="Write for example --duration 20.",
-        )
+    check_duration(arguments.duration)
+    check_port(arguments.port)

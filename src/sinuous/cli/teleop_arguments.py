@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from tyro.conf import FlagCreatePairsOff, Positional, arg
+from tyro.conf import Positional, arg
 
 from sinuous.cli.arguments import Assignments
 
@@ -12,21 +12,24 @@ LIVE_SCENARIO = "examples/scenarios/live_watchdog.toml"
 
 @dataclass(frozen=True, kw_only=True)
 class Teleop:
-    """Run a scenario in real time, with a hand that moves the tip and feels the wall.
+    """Run a scenario in real time: take the tip on a page in the browser, feel the wall.
 
     Exit codes: 0 done, 1 it failed and the robot holds still, 2 bad input, 130 interrupted.
     """
 
     scenario: Positional[Annotated[str, arg(metavar="SCENARIO")]] = LIVE_SCENARIO
     """the scenario's TOML file"""
-    leader: Annotated[str, arg(metavar="HAND")] = "recorded"
-    """the hand: "recorded" follows the scenario's path, over and over again; keyboard (of this
-    terminal), gamepad, spacemouse or haply; a CSV file with columns such as t_s,x_mm,y_mm,z_mm; or
-    a recording (.mcap, or its folder), whose hand moves as it did"""
+    leader: Annotated[str | None, arg(metavar="HAND")] = None
+    """the hand: "gizmo" is dragged on the page, "recorded" follows the scenario's path, over and
+    over again; keyboard (of this terminal), gamepad, spacemouse or haply; a CSV file with columns
+    such as t_s,x_mm,y_mm,z_mm; or a recording (.mcap, or its folder), whose hand moves as it did.
+    By default the gizmo, or "recorded" where there is no page or no terminal"""
     duration: Annotated[float | None, arg(metavar="S")] = None
     """how long to run [s]; by default until Ctrl-C, or 20 s where there is no terminal"""
-    no_browser: FlagCreatePairsOff[bool] = False
-    """run without a page, which is all that this version does"""
+    browser: bool = True
+    """serve the page, and open it if there is a display"""
+    port: Annotated[int, arg(metavar="PORT")] = 8080
+    """of the page on this machine; the next that is free if it is taken"""
     out: Annotated[str | None, arg(metavar="DIR")] = None
     """record into a folder; that of an earlier run is overwritten"""
     json: Annotated[str | None, arg(metavar="FILE")] = None

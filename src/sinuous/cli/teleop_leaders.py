@@ -21,15 +21,16 @@ from sinuous.live.path_hand import hand_axes
 from sinuous.live.processes import LeaderMaker
 from sinuous.recording import read
 from sinuous.scenario import Scenario
+from sinuous.view.page.hands import gizmo_hand
 
-RECORDED = "recorded"
+GIZMO, RECORDED = "gizmo", "recorded"
 DEVICES: dict[str, type[Leader]] = {
     "keyboard": TerminalKeyboard,
     "gamepad": Gamepad,
     "spacemouse": SpaceMouse,
     "haply": Haply,
 }
-NAMES = (RECORDED, *DEVICES, "FILE.csv", "FILE.mcap")
+NAMES = (GIZMO, RECORDED, *DEVICES, "FILE.csv", "FILE.mcap")
 
 MOVED = ("teleop.operator.kind=trajectory",)
 """Fields of a scenario whose device is moved as the hand moves: it is the device itself that gives
@@ -62,6 +63,8 @@ def leader_choice(name: str) -> Choice:
         InputError: if there is no such name or file, the device is not there, or its package is
             not installed
     """
+    if name == GIZMO:
+        return Choice(make=gizmo_hand)
     if name == RECORDED:
         return Choice(make=PathHand)
     device = DEVICES.get(name)

@@ -12,11 +12,12 @@ from sinuous.live.machine import load_average
 from sinuous.live.memory import Memory
 from sinuous.live.processes import LeaderMaker
 from sinuous.live.report import loop_numbers, watch_numbers
-from sinuous.live.scenario import Recipe
+from sinuous.live.scenario import Recipe, ticks_per_step
 from sinuous.live.snapshot import Looker, Snapshot
 from sinuous.live.times import Times
 from sinuous.live.watch import Watch
 from sinuous.recording import Recorder
+from sinuous.scenario import Scenario
 from sinuous.scenario.start import check_start
 from sinuous.session.folder import RECORDING, RunFolder
 from sinuous.session.header import make_header
@@ -25,6 +26,18 @@ FRAME = 1.0 / 30.0  # between two snapshots [s]
 SECOND = 1.0  # between two looks at the memory [s]
 TURN = 0.005  # longest wait for anything to happen [s]
 MOMENT = 0.05  # the same before the first tick [s]
+
+
+def checked(recipe: Recipe) -> Scenario:
+    """The scenario of a recipe, if it can run live from where its robot stands.
+
+    Raises:
+        InputError: if it cannot be used, or the robot may not start where it stands
+    """
+    scenario = recipe.make()
+    check_start(scenario)
+    ticks_per_step(scenario)
+    return scenario
 
 
 class Act:
@@ -50,8 +63,7 @@ class Act:
         baseline: bool,
         observe: Callable[[Snapshot], None],
     ) -> None:
-        self.scenario = recipe.make()
-        check_start(self.scenario)
+        self.scenario = checked(recipe)
         self._clock, self._observe = clock, observe
         self.crew = Crew(self.scenario, recipe, leader, baseline=baseline)
         self._board = self.crew.board
@@ -109,12 +121,17 @@ class Act:
         Raises:
             InputError: if it cannot be written
         """
-        if self._watch.recorder is not None:
-            self._watch.recorder.close()
-            self._watch.recorder = None
+        recorder, self._watch.recorder = self._watch.recorder, None
+        if recorder is not None:
+            recorder.close()
         if folder is not None:
             path = RunFolder.prepare(folder).path / RECORDING
             self._watch.recorder = Recorder(path, make_header(self.scenario))
+
+    def stop_recording(self) -> None:
+        """Record no longer, whether or not the end can still be written."""
+        with suppress(InputError):
+            self.record(None)
 
     def numbers(self) -> dict[str, Any]:
         """How it went so far."""
@@ -131,5 +148,4 @@ class Act:
         try:
             self.crew.end()
         finally:
-            with suppress(InputError):
-                self.record(None)
+            self.stop_recording()

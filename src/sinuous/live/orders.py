@@ -1,10 +1,12 @@
 """What may be asked of a session while it runs."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import isfinite
 
 from sinuous.arrays import Array
-from sinuous.leaders.leader import point
+from sinuous.leaders.leader import Leader, point
+from sinuous.scenario import Scenario
 from sinuous.scenario.teleop_tables import SchemeChoice
 
 
@@ -103,15 +105,18 @@ class Reset:
     """Begin again from the start, with other fields of the scenario if there are any.
 
     Everything that is not said above goes this way: horizon, gains of the controller, plant,
-    disturbance, or another scenario. Both loops are made anew, which takes a second or two.
+    disturbance, another scenario, or another device. Both loops are made anew, which takes a second
+    or two. What cannot be used is refused, and the session goes on as it was.
 
     Arguments:
         set: fields as on the command line, such as "mpc.horizon=8", in addition to those before
         scenario: another file; None for the same
+        leader: makes another device; None for the same
     """
 
     set: tuple[str, ...] = ()
     scenario: str | None = None
+    leader: Callable[[Scenario], Leader] | None = None
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,8 @@ from queue import Empty, SimpleQueue
 from threading import Event
 from typing import Any
 
-from sinuous.live.act import Act
+from sinuous.errors import InputError
+from sinuous.live.act import Act, checked
 from sinuous.live.clock import Clock, WallClock
 from sinuous.live.orders import Order, Record, Reset, Stop
 from sinuous.live.processes import LeaderMaker
@@ -47,6 +48,16 @@ def _nothing(*_: object) -> None:
     pass
 
 
+def following(folder: str | None) -> str | None:
+    """Where a recording goes on after a reset, so that what there is stays: "run", "run-2" ..."""
+    if folder is None:
+        return None
+    stem, dash, number = folder.rpartition("-")
+    if dash and number.isdecimal() and len(number) < 4:  # a longer one is a date or time
+        return f"{stem}-{int(number) + 1}"
+    return f"{folder}-2"
+
+
 class LiveSession:
     """Runs a scenario in real time.
 
@@ -55,9 +66,11 @@ class LiveSession:
         leader: makes the device in the process that reads it; must be picklable
         baseline: whether a loop that does nothing is measured beside the others
         patient: whether a fault waits for an order to reset instead of ending the session
-        started: called with the scenario before the first tick, and after a reset
+        started: called with the scenario and its recipe before the first tick, and after a reset
         observe: called with a snapshot 30 times a second; it holds up judging and recording only
         failed: called with what went wrong
+        refused: called with why an order is not followed, or recording has ended; None if a
+            recording that fails shall end the session
         clock: of the machine
     """
 
@@ -68,14 +81,16 @@ class LiveSession:
         *,
         baseline: bool = False,
         patient: bool = False,
-        started: Callable[[Scenario], None] = _nothing,
+        started: Callable[[Scenario, Recipe], None] = _nothing,
         observe: Callable[[Snapshot], None] = _nothing,
         failed: Callable[[str], None] = _nothing,
+        refused: Callable[[str], None] | None = None,
         clock: Clock | None = None,
     ) -> None:
         self._recipe, self._leader, self._baseline = recipe, leader, baseline
         self._patient = patient
         self._started, self._observe, self._failed = started, observe, failed
+        self._refused = refused
         self._clock = clock or WallClock()
         self._asked = SimpleQueue[Order]()
         self._senders = list["Connection[Any, Any]"]()
@@ -94,7 +109,8 @@ class LiveSession:
 
         Arguments:
             duration: None for no end
-            record: folder for a recording from the start; None for none
+            record: folder for a recording from the start; None for none. After a reset, it goes on
+                in another one, see `following`
 
         Raises:
             InputError: if scenario or folder cannot be used
@@ -104,11 +120,8 @@ class LiveSession:
             then = self._act(duration)
             if isinstance(then, LiveResult):
                 return then
-            file, changed = then.scenario, (*self._recipe.set, *then.set)
-            # Fields of one scenario mean nothing to another one.
-            self._recipe = (
-                Recipe(self._recipe.file, changed) if file is None else Recipe(file, then.set)
-            )
+            self._recipe, self._folder = self._changed(then), following(self._folder)
+            self._leader = then.leader or self._leader
 
     def _act(self, duration: float | None) -> LiveResult | Reset:
         """From the first tick until the end, or until everything is to begin again."""
@@ -119,7 +132,7 @@ class LiveSession:
             act.record(self._folder)
             fault = act.get_ready()
             if not fault:
-                self._started(act.scenario)
+                self._started(act.scenario, self._recipe)
             with interruptible() as interrupted:
                 return self._play(act, duration, fault, interrupted)
         except KeyboardInterrupt:
@@ -149,14 +162,52 @@ class LiveSession:
                     case Stop():
                         return LiveResult(numbers=act.numbers(), end=LiveEnd.STOPPED)
                     case Reset():
-                        return order
+                        if self._is_possible(order):
+                            return order
                     case Record(folder):
-                        self._folder = folder
-                        act.record(folder)
+                        self._record(act, folder)
                     case _:
                         act.crew.order(order)
             if not fault:
-                act.turn()
+                self._turn(act)
+
+    def _changed(self, order: Reset) -> Recipe:
+        """The recipe after a reset; fields of one scenario mean nothing to another one."""
+        if order.scenario is not None:
+            return Recipe(order.scenario, order.set)
+        return Recipe(self._recipe.file, (*self._recipe.set, *order.set))
+
+    def _is_possible(self, order: Reset) -> bool:
+        """Whether what a reset asks for can be used; if not, that is told, and nothing changes."""
+        if self._refused is None:
+            return True
+        try:
+            checked(self._changed(order))
+        except InputError as error:
+            self._refused(str(error))
+            return False
+        return True
+
+    def _record(self, act: Act, folder: str | None) -> None:
+        try:
+            self._folder = folder
+            act.record(folder)
+        except InputError as error:
+            self._give_up_recording(act, error)
+
+    def _turn(self, act: Act) -> None:
+        try:
+            act.turn()
+        except InputError as error:
+            self._give_up_recording(act, error)
+
+    def _give_up_recording(self, act: Act, error: InputError) -> None:
+        """A recording that cannot be written, say on a full disk, ends; the robot need not."""
+        if self._refused is None:
+            raise error
+        self._folder = None
+        act.stop_recording()
+        self._refused(f"recording has ended: {error}")
 
     def _orders(self) -> list[Order]:
         """What was asked since the last time."""

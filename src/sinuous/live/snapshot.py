@@ -27,7 +27,7 @@ class Snapshot:
         lengths: of the actuators, as measured (P,) [m]
         tensions: of the plant's cables (C,) [N]; empty if it does not know them
         contacts: deepest penetration [m], largest and total force [N] at walls (3,)
-        nearest: of the body points, the one that is closest to a wall
+        nearest: of the body points that can move, the one that is closest to a wall
         wall: the point of the wall that is closest to it (3,) [m]; nan without walls
         clearance: between the two, less the body's radius there [m]; inf without walls
         hand: where the device says the operator's hand is (3,) [m]
@@ -83,7 +83,7 @@ class Snapshot:
 
     @property
     def advice(self) -> str:
-        """One line: what limits the robot or the session right now; empty if nothing does."""
+        """What stands in the way of the whole session right now; empty if nothing does."""
         if not self.connected:
             return "the device is gone: plug it in and resume"
         if self.late:
@@ -92,7 +92,7 @@ class Snapshot:
             return f"holding still: {self.reason}"
         if self.paused:
             return "paused"
-        return "; ".join(self.limits)
+        return ""
 
 
 class Looker:
@@ -125,6 +125,7 @@ class Looker:
             return None
         near = zone.nearest(row["actual"])
         room = near.clearance - robot.radii
+        room[~robot.movable] = np.inf  # what cannot move has no part in the clearance
         place = int(np.argmin(room))
         signals, done = tick["signals"], board.ticks.written * self._tick
         passed = now - board.get("go")

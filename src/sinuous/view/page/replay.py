@@ -1,7 +1,5 @@
 """A recording on a page: with a slider for time, or as one file that needs no server."""
 
-from contextlib import redirect_stdout
-from io import StringIO
 from threading import Lock
 from typing import Self
 
@@ -9,8 +7,10 @@ import numpy as np
 import viser
 
 from sinuous.arrays import IntArray
+from sinuous.view.page.limits import few
 from sinuous.view.page.recorded import Recorded
 from sinuous.view.page.replay_plots import ReplayPlots
+from sinuous.view.page.server import address_of, start_server, stop_server
 from sinuous.view.page.stage import Stage
 from sinuous.view.units import MM_PER_M
 
@@ -31,7 +31,7 @@ class Replay:
         self._recorded, self._lock = recorded, Lock()
         times = recorded.recording.time
         self._first, self._last = float(times[0]), float(times[-1])
-        self._server = _server(recorded, port)
+        self._server = start_server(port, recorded.recording.header.name)
         self._stage = Stage(self._server.scene, recorded.recording.header, recorded.robot)
         _look(self._server, self._stage)
         self._step = -1
@@ -43,12 +43,12 @@ class Replay:
         return self
 
     def __exit__(self, *_: object) -> None:
-        _stop(self._server)
+        stop_server(self._server)
 
     @property
     def address(self) -> str:
         """Where the page is."""
-        return f"http://127.0.0.1:{self._server.get_port()}"
+        return address_of(self._server)
 
     def _build(self) -> None:
         gui, period = self._server.gui, self._recorded.recording.header.dt
@@ -113,10 +113,8 @@ def status_line(recorded: Recorded, step: int) -> str:
     clearance = float(recording.actual_clearance[step])
     room = f"{clearance * MM_PER_M:.1f} mm" if np.isfinite(clearance) else "no walls"
     cut = "" if recording.complete else "\n\nThe recording was cut off."
-    more = f" and {len(limits) - 2} more" if len(limits) > 2 else ""
-    by = "; ".join(limits[:2]) + more if limits else "nothing"
     state = recording.status[step].replace("_", " ")
-    return f"**{state}**, clearance {room}  \nlimited by: {by}{cut}"
+    return f"**{state}**, clearance {room}  \nlimited by: {few(tuple(limits))}{cut}"
 
 
 def frames_of(recorded: Recorded) -> tuple[IntArray, float]:
@@ -134,7 +132,7 @@ def frames_of(recorded: Recorded) -> tuple[IntArray, float]:
 
 def as_html(recorded: Recorded, *, port: int) -> str:
     """One page that shows it all and needs nothing else."""
-    server = _server(recorded, port)
+    server = start_server(port, recorded.recording.header.name)
     try:
         stage = Stage(server.scene, recorded.recording.header, recorded.robot)
         _look(server, stage)
@@ -147,22 +145,7 @@ def as_html(recorded: Recorded, *, port: int) -> str:
             serializer.insert_sleep(period)
         return serializer.as_html()
     finally:
-        _stop(server)
-
-
-def _server(recorded: Recorded, port: int) -> viser.ViserServer:
-    with redirect_stdout(StringIO()):  # who asked for the page says where it is
-        server = viser.ViserServer(
-            host="127.0.0.1", port=port, label=recorded.recording.header.name, verbose=False
-        )
-    server.gui.configure_theme(control_width="large", show_share_button=False)
-    server.gui.main_panel.dock_right()
-    return server
-
-
-def _stop(server: viser.ViserServer) -> None:
-    with redirect_stdout(StringIO()):
-        server.stop()
+        stop_server(server)
 
 
 def _look(server: viser.ViserServer, stage: Stage) -> None:

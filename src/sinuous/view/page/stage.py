@@ -25,6 +25,7 @@ LOOKS = {  # colour and opacity; keep-outs are solid
 }
 DIFFERENT = 5e-4  # distance [m] from which the model's shape is drawn beside the plant's
 NEAR = 3.0  # clearances of that many margins and more are comfortable
+UPRIGHT = 0.3  # sine of the angle to the vertical below which a robot stands upright
 SPREAD = 1.25  # distance of the camera, as a multiple of the scene's size
 
 
@@ -47,7 +48,7 @@ class Stage:
         """Diagonal of passage and robot [m]."""
         self.tensions = TensionColours()
         self._handles: list[viser.SceneNodeHandle] = []
-        self._spots = everything
+        self._spots, self._home = everything, home
         self._draw_walls(scene, header)
         self._draw_robot(scene, home)
         self._draw_signs(scene, home)
@@ -60,8 +61,13 @@ class Stage:
     def home_camera(self) -> tuple[Array, Array]:
         """From where, and where to look to see it all: two places (3,), in units of the page."""
         centre = 0.5 * (self._low + self._high)
-        _, _, axes = np.linalg.svd(self._spots - centre, full_matrices=False)
-        side = axes[-1] * (1.0, 1.0, 0.0)  # the flat side of the whole, seen from a little above
+        along = self._home[-1] - self._home[0]
+        along /= float(np.linalg.norm(along))
+        if np.hypot(along[0], along[1]) > UPRIGHT:
+            side = np.array([-along[1], along[0], 0.0])  # the robot from its side
+        else:
+            _, _, axes = np.linalg.svd(self._spots - centre, full_matrices=False)
+            side = axes[-1] * (1.0, 1.0, 0.0)  # the flat side of the whole
         size = float(np.linalg.norm(side))
         side = side / size if size > 0.2 else np.array([0.0, -1.0, 0.0])
         side = side * (-1.0 if side[1] > 0.0 else 1.0)
