@@ -12,13 +12,14 @@ on that point, and K way with
 
     way = (J J' + mu)^-1 J sum_i J_i' push_i / 2w          (J, J_i by actuator metres)
 
-is the force of all walls as it is felt at the tip: what (J')^+ gives in the controller's own metric,
-damped like the null space of its posture. A direction in which the tip cannot move gives no force.
+is the force of all walls as it is felt at the tip: what (J')^+ gives in the controller's own
+metric, damped like the null space of its posture. A direction in which the tip cannot move gives
+no force.
 
-Only walls count, no limits of speed: in free motion the way is zero, however far behind the tip is.
-At rest it is tip - target. While the body moves, and where rows are softened because not all can be
-kept, multipliers may be larger; walls cannot hold more back than there is to be pulled, so the way is
-no longer than the target is from the tip.
+Only walls count, no limits of speed: in free motion the way is zero, however far behind the tip
+is. At rest it is tip - target. While the body moves, and where not all rows can be kept,
+multipliers may be larger; walls cannot hold back more than is pulled, so the way is no longer than
+the target is from the tip.
 """
 
 from dataclasses import dataclass, field
@@ -29,6 +30,7 @@ import numpy as np
 from sinuous.arrays import Array, IntArray
 from sinuous.control.metric import actuator_inverse
 from sinuous.control.step.linearise import NULL_SPACE_DAMPING
+from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.robot import Robot
 
 NOWHERE = np.zeros(3)
@@ -79,12 +81,7 @@ class Walls:
     def _mapped(self) -> Array:
         if not np.any(self.push):
             return NOWHERE
-        J = self.robot.points_jacobian(self.c)
-        generalised = np.einsum("ki,kin->n", self.push, J[self.point])
-        inverse = actuator_inverse(self.robot)
-        tip, pushed = J[-1] @ inverse, generalised @ inverse
-        gain = tip @ tip.T + NULL_SPACE_DAMPING * np.eye(3)
-        return np.linalg.solve(gain, tip @ pushed)
+        return at_tip(self.robot, self.c, self.point, self.push)
 
     @property
     def _pull(self) -> float:
@@ -94,3 +91,36 @@ class Walls:
     def _share(self) -> float:
         size, most = float(np.linalg.norm(self._mapped)), self._pull
         return most / size if size > most else 1.0
+
+
+def at_tip(robot: Robot, c: Array, point: IntArray, push: Array) -> Array:
+    """The force at the tip (3,) that does what forces on the body do, see above.
+
+    Arguments:
+        c: configuration (n,)
+        point: where they act (k,)
+        push: the forces, in any unit (k, 3)
+    """
+    J, inverse = robot.points_jacobian(c), actuator_inverse(robot)
+    tip, pushed = J[-1] @ inverse, np.einsum("ki,kin->n", push, J[point]) @ inverse
+    return np.linalg.solve(tip @ tip.T + NULL_SPACE_DAMPING * np.eye(3), tip @ pushed)
+
+
+def closeness(robot: Robot, zone: SafeZone, c: Array, distance: Array, reach: float) -> Array:
+    """How much closer than reach the body is to a wall at its closest point, at the tip (3,) [m].
+
+    Zero while every point has that much room; at the margin, the reach along the wall's normal,
+    mapped to the tip.
+
+    Arguments:
+        c: configuration (n,)
+        distance: that the body's points keep (S,) [m]
+        reach: [m]
+    """
+    near = zone.nearest(robot.points(c))
+    room = np.where(robot.movable, near.clearance - distance, np.inf)
+    closest = int(np.argmin(room))
+    missing = reach - float(room[closest])
+    if missing <= 0.0:
+        return NOWHERE
+    return at_tip(robot, c, np.array([closest]), missing * near.gradient[closest : closest + 1])

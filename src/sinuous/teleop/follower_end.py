@@ -9,10 +9,11 @@ import numpy as np
 from sinuous.arrays import Array, ArrayLike
 from sinuous.teleop import kernels
 from sinuous.teleop.drift import DriftCorrection
-from sinuous.teleop.force import Motion, VirtualForce
+from sinuous.teleop.force import VirtualForce
 from sinuous.teleop.limits import Limits
 from sinuous.teleop.link import Packet
 from sinuous.teleop.mapping import Mapping
+from sinuous.teleop.motion import NO_WALLS, Motion, Walls
 from sinuous.teleop.passivity import PassivityControl
 from sinuous.teleop.ports import FollowerPort, PortMemory
 from sinuous.teleop.ramp import Ramp
@@ -134,9 +135,13 @@ class FollowerEnd:
         return state._replace(running=True)
 
     def step(
-        self, state: FollowerState, tip_w: ArrayLike, received: Packets
+        self, state: FollowerState, tip_w: ArrayLike, received: Packets, walls: Walls = NO_WALLS
     ) -> tuple[FollowerState, FollowerSignals, Packet]:
-        """One tick, given the follower's measured tip (3,) [m]: force, target and what is sent."""
+        """One tick, given the follower's measured tip (3,) [m]: force, target and what is sent.
+
+        Arguments:
+            walls: that its controller knows of
+        """
         X_sd, V_before, X_before, port, tank, share, running, apart = state
         dt, zero = self.scheme.dt, self._zero
         (X_s, V_s), X_next = self.mapping.watch(tip_w, X_before, dt), np.empty(zero.size)
@@ -146,7 +151,7 @@ class FollowerEnd:
             if share == 0.0 and joins:
                 X_sd, V_before, apart = X_s, zero, _apart(inbox, X_s)
             share = self.ramp.step(share, dt, join=joins)
-        F_s = self.force.force(Motion(X_sd, V_before, X_s, V_s))
+        F_s = self.force.force(Motion(X_sd, V_before, X_s, V_s, *walls))
         if share == 1.0:
             port, V_sd, packet = self.port.answer(port, inbox, F_s, X_sd, running)
             if self.correction is not None and inbox.position is not None:
