@@ -102,9 +102,12 @@ class Play:
         return block
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_it_is_the_simulated_session(name: str) -> None:
-    scene, samples = scenario(name), 60
+@pytest.mark.parametrize(
+    ("name", "set"),
+    [*((name, ()) for name in NAMES), ("live_watchdog", ("teleop.force.nearness_mm=20",))],
+)
+def test_it_is_the_simulated_session(name: str, set: tuple[str, ...]) -> None:
+    scene, samples = scenario(name, *set), 60
     expected = list(islice(steps(scene), samples))
     live = InStep(scene, PathHand(scene), SteppedClock())
     watch, kept = Watch(scene, live.board), Kept()

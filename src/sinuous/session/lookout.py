@@ -1,43 +1,10 @@
 """From what a controller reports to the walls that an operator may feel."""
 
-import numpy as np
-
 from sinuous.arrays import Array
 from sinuous.control.report import Report
 from sinuous.control.wall_force import NOWHERE, closeness
 from sinuous.scenario import Scenario
-from sinuous.teleop.motion import NO_WALLS, Plane, Walls
-
-SETTLING = 0.05
-"""Time in which what is known of walls settles [s]. Where the robot is at a limit of speed, the
-multipliers of the walls that it slides along change from step to step."""
-
-NEGLIGIBLE = 1e-6  # a way that is no wall any longer [m]
-
-
-def settled(before: Plane, way: Array, target: Array, share: float) -> Plane:
-    """The plane a step later: the one before, and a share of what it lacks of what is known now.
-
-    A wall that stays where it is is pushed further, and let go of, without any lag: what the plane
-    before says of the new target is right already. It never says that there is more of a wall than
-    both the controller knows and there was.
-
-    Arguments:
-        before: a step ago
-        way: what is known now (3,) [m]
-        target: of the tip now (3,) [m]
-        share: of what the plane before lacks, 0 to 1
-    """
-    size = float(np.linalg.norm(before.way))
-    expected = before.way
-    if size > 0.0:
-        n = before.way / size
-        most = max(size, float(np.linalg.norm(way)))
-        expected = min(max(float(n @ (before.place - target)), 0.0), most) * n
-    now = expected + share * (way - expected)
-    if float(np.linalg.norm(now)) < NEGLIGIBLE:
-        return Plane()
-    return Plane(np.asarray(target + now), now)
+from sinuous.teleop.motion import Plane, Walls
 
 
 class Lookout:
@@ -51,8 +18,6 @@ class Lookout:
         force = None if scenario.teleop is None else scenario.teleop.table.force
         self._constraints = force is not None and force.constraints
         self._reach = 0.0 if force is None else force.nearness
-        self._share = scenario.controller.dt / (SETTLING + scenario.controller.dt)
-        self._walls = NO_WALLS
         self._distance = scenario.robot.required_distance(scenario.mpc.margin)
         self._has_walls = len(scenario.zone.surfaces) > 0
 
@@ -64,12 +29,11 @@ class Lookout:
             target: of the tip (3,) [m]
             report: of the step
         """
-        held, near = self._walls
-        if self._constraints:
-            way = NOWHERE if report.walls is None else report.walls.way
-            held = settled(held, way, target, self._share)
+        held, near = Plane(target, NOWHERE), Plane(report.points[-1], NOWHERE)
+        if self._constraints and report.walls is not None:
+            way = report.walls.way
+            held = Plane(target + way, way)
         if self._reach > 0.0 and self._has_walls:
             way = closeness(report.robot, report.zone, c, self._distance, self._reach)
-            near = settled(near, way, report.points[-1], self._share)
-        self._walls = Walls(held, near)
-        return self._walls
+            near = Plane(near.place + way, way)
+        return Walls(held, near)

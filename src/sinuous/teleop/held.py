@@ -11,10 +11,55 @@ from dataclasses import dataclass
 import numpy as np
 
 from sinuous.arrays import Array
-from sinuous.teleop import kernels
+from sinuous.teleop import kernels, wall_kernels
 from sinuous.teleop.checks import zero_or_more
 from sinuous.teleop.mapping import Mapping
-from sinuous.teleop.motion import Motion, Plane
+from sinuous.teleop.motion import Motion, Plane, Walls
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settling:
+    """What is known of walls settles from tick to tick, without any lag at a wall that stays.
+
+    Where the robot is at a limit of speed, the multipliers of the walls that it slides along
+    change from step to step, and a plane that a step brings must not be a jump. So in every tick
+    the plane of the tick before says first what it makes of the point now: of a wall that stays,
+    pushed further or let go of, that is right already. What it lacks of what is known is added by
+    a share per tick. It never says that there is more of a wall than both the controller's plane
+    says and there was, else it would go along with a point that moves on when the wall has gone.
+
+    Arguments:
+        time: in which it settles [s]; zero for at once
+
+    Raises:
+        ValueError: if the time is negative or not finite
+    """
+
+    time: float = 0.05
+
+    def __post_init__(self) -> None:
+        zero_or_more("time", self.time)
+
+    def step(self, before: Walls, now: Walls, desired: Array, real: Array, dt: float) -> Walls:
+        """The walls in a tick.
+
+        Arguments:
+            before: in the tick before
+            now: as the controller knows them
+            desired, real: where the tip should be, and where it is (3,) [m]
+            dt: time of a tick [s]
+        """
+        share = dt / (self.time + dt)
+        return Walls(
+            _settled(desired, before.held, now.held, share),
+            _settled(real, before.near, now.near, share),
+        )
+
+
+def _settled(p: Array, before: Plane, now: Plane, share: float) -> Plane:
+    place, way = np.empty(3), np.empty(3)
+    wall_kernels.settle(p, *before, *now, share, place, way)
+    return Plane(place, way)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -76,11 +121,7 @@ class NearForce:
 def _push(
     mapping: Mapping, stiffness: float, damping: float, plane: Plane, X: Array, motion: Motion
 ) -> Array:
-    out = np.zeros(mapping.scale.size)
-    size = float(np.linalg.norm(plane.way))
-    if size > 0.0:
-        n = plane.way / size
-        depth = float(n @ (plane.place - mapping.place(X)))
-        if depth > 0.0:
-            kernels.wall(mapping.axes, depth * n, stiffness, damping, motion.V_sd, out)
+    out, way = np.zeros(mapping.scale.size), np.empty(3)
+    wall_kernels.beyond(mapping.place(X), plane.place, plane.way, way)
+    kernels.wall(mapping.axes, way, stiffness, damping, motion.V_sd, out)
     return out
