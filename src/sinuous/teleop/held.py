@@ -16,6 +16,9 @@ from sinuous.teleop.checks import zero_or_more
 from sinuous.teleop.mapping import Mapping
 from sinuous.teleop.motion import Motion, Plane, Walls
 
+DAMPED = 1e-3
+"""Depth from which on a wall damps as much as it can [m]: contact at speed is no jump."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Settling:
@@ -67,7 +70,7 @@ class HeldForce:
     """A spring and a damper that hold the desired point back from beyond the walls' plane.
 
     F = K n max(n . (place - p_sd), 0), with the unit vector n along the way: at the step's own
-    target that is K times the way. Its damping acts on motion into the wall only.
+    target that is K times the way. Its damping comes in over the first millimetre; it never pulls.
 
     Arguments:
         mapping: from the wave side to the world
@@ -122,6 +125,7 @@ def _push(
     mapping: Mapping, stiffness: float, damping: float, plane: Plane, X: Array, motion: Motion
 ) -> Array:
     out, way = np.zeros(mapping.scale.size), np.empty(3)
-    wall_kernels.beyond(mapping.place(X), plane.place, plane.way, way)
-    kernels.wall(mapping.axes, way, stiffness, damping, motion.V_sd, out)
+    depth = wall_kernels.beyond(mapping.place(X), plane.place, plane.way, way)
+    fading = damping * min(depth / DAMPED, 1.0)
+    kernels.wall(mapping.axes, way, stiffness, fading, motion.V_sd, out)
     return out
