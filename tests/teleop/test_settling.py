@@ -1,6 +1,7 @@
 """What is known of walls settles, without lag where a wall stays and without a wall that stays."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -12,6 +13,12 @@ from sinuous.teleop.wall_kernels import NEGLIGIBLE
 ROUNDING = 1e-12
 SHARE = 0.2
 NORMAL = np.array([0.6, 0.0, -0.8])
+
+
+@pytest.mark.parametrize("bad", [-1.0, np.nan, np.inf])
+def test_bad_times_are_refused(bad: float) -> None:
+    with pytest.raises(ValueError, match="time"):
+        Settling(time=bad)
 
 
 def settled(before: Plane, way: Array, target: Array, share: float) -> Plane:
