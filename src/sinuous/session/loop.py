@@ -8,7 +8,7 @@ import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.control.controller import ControllerState
-from sinuous.control.report import Command
+from sinuous.control.report import Command, Report
 from sinuous.measurement import Measurement
 from sinuous.plants.plant import NO_CONTACT, Contacts, PlantFault, Truth
 from sinuous.recording import Sample, status_name
@@ -181,6 +181,13 @@ def is_finite(measured: Measurement, truth: Truth) -> bool:
     return all(bool(np.all(np.isfinite(value))) for value in values)
 
 
+def _body_force(scenario: Scenario, report: Report) -> Array:
+    """Of walls on the point that they push the most (3,) [N]; zero without an operator."""
+    if scenario.teleop is None or report.walls is None:
+        return np.zeros(3)
+    return scenario.teleop.table.force.stiffness * report.walls.body
+
+
 def _sample(
     scenario: Scenario,
     *,
@@ -224,5 +231,7 @@ def _sample(
         active=(*(active.name for active in report.active), *slack_cables(robot, known)),
         tensions=truth.tensions,
         contacts=np.array(contacts),
+        pushed=0 if report.walls is None else report.walls.pushed,
+        body_force=_body_force(scenario, report),
         signals=signals,
     )
