@@ -122,5 +122,5 @@ def closeness(robot: Robot, zone: SafeZone, c: Array, distance: Array, reach: fl
     closest = int(np.argmin(room))
     missing = reach - float(room[closest])
     if missing <= 0.0:
-        return NOWHERE
+        return np.zeros(3)
     return at_tip(robot, c, np.array([closest]), missing * near.gradient[closest : closest + 1])

@@ -2,9 +2,9 @@
 
 from sinuous.arrays import Array
 from sinuous.control.report import Report
-from sinuous.control.wall_force import NOWHERE, closeness
+from sinuous.control.wall_force import closeness
 from sinuous.scenario import Scenario
-from sinuous.teleop.motion import Plane, Walls
+from sinuous.teleop.motion import NO_WALLS, Plane, Walls
 
 
 class Lookout:
@@ -29,11 +29,11 @@ class Lookout:
             target: of the tip (3,) [m]
             report: of the step
         """
-        held, near = Plane(target, NOWHERE), Plane(report.points[-1], NOWHERE)
+        held, near = NO_WALLS
         if self._constraints and report.walls is not None:
             way = report.walls.way
             held = Plane(target + way, way)
         if self._reach > 0.0 and self._has_walls:
             way = closeness(report.robot, report.zone, c, self._distance, self._reach)
-            near = Plane(near.place + way, way)
+            near = Plane(report.points[-1] + way, way)
         return Walls(held, near)

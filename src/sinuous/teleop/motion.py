@@ -6,8 +6,8 @@ import numpy as np
 
 from sinuous.arrays import Array
 
+# Not write-protected, which would be another type to compiled code; nothing writes to it.
 _ZERO = np.zeros(3)
-_ZERO.setflags(write=False)
 
 
 class Plane(NamedTuple):
