@@ -199,6 +199,15 @@ BAD = {
         ["teleop.force.boundary_mm=[[-180, 180], [-180, 180]]"],
         ["teleop.force.boundary", "3 pairs"],
     ),
+    "a wall felt twice": (
+        ["teleop.force.constraints=true"],
+        ["teleop.force.zone", "felt twice", "zone = false"],
+    ),
+    "constraints of a law without any": (
+        ["teleop.force.constraints=true", "teleop.force.zone=false", "control.law=dls"],
+        ["teleop.force.constraints", "dls", 'control.law = "mpc"'],
+    ),
+    "negative nearness": (["teleop.force.nearness_mm=-1"], ["teleop.force.nearness"]),
     "scales": (["teleop.mapping.scale=[1, 2]"], ["teleop.mapping.scale", "3, one for each axis"]),
     "origin of a plane": (
         ["teleop.mapping.space=plane", "teleop.mapping.origin_mm=[0, 0, 0]"],

@@ -16,7 +16,7 @@ from rosbags.highlevel import AnyReader
 from sinuous.control.report import Status
 from sinuous.errors import InputError
 from sinuous.recording import Header, Recorder, Recording, Sample, ZonePart, read, status_name
-from sinuous.recording.messages import LEVELS, ZONE_COLORS
+from sinuous.recording.messages import LEVELS, TOPICS, ZONE_COLORS
 
 POINTS, ACTUATORS, COORDINATES, CABLES = 7, 5, 3, 4
 ANY_FLOAT = st.floats(width=64)
@@ -70,6 +70,8 @@ def make_sample(k: int, seed: int = 0, **changes: Any) -> Sample:
         "step_fraction": float(rng.random()),
         "tensions": rng.random(CABLES),
         "contacts": rng.random(3),
+        "pushed": int(rng.integers(0, POINTS)),
+        "body_force": rng.normal(size=3),
         "active": ("cable 1.2 at its limit", "triangle 12 of tube.stl")[: k % 3],
     }
     return Sample(**values | changes)
@@ -352,3 +354,13 @@ def test_a_disk_that_fills_up_names_the_file(
     monkeypatch.undo()
     if space:
         assert not read(path).complete
+
+
+def test_a_recording_that_does_not_know_what_walls_push_is_read() -> None:
+    (report,) = (topic for topic in TOPICS if topic.name == "/diagnostics")
+    message: Any = report.encode(make_sample(1), make_header())
+    values = message.status[0].values
+    values[:] = [one for one in values if one.key not in {"pushed", "body_force"}]
+    found = report.decode(message)
+    assert found["pushed"] == 0
+    assert np.array_equal(found["body_force"], np.zeros(3))

@@ -16,6 +16,7 @@ from sinuous.teleop.boundary import BoxForce, ZoneForce
 from sinuous.teleop.delays import Steady
 from sinuous.teleop.drift import DriftCorrection
 from sinuous.teleop.force import ErrorForce, ErrorForceAlong, Together
+from sinuous.teleop.held import HeldForce
 from sinuous.teleop.impaired import ImpairedLink
 from sinuous.teleop.limits import Limits
 from sinuous.teleop.losses import RandomLoss
@@ -71,11 +72,12 @@ def _by_hand() -> None:
     plane, space = Mapping.plane(1.0, float(tip[1])), Mapping.space(1.0, tip)
     box = BoxForce(low=[-1.0, -1.0], high=[1.0, 1.0])
     walls = ZoneForce(zone=zone, mapping=space, distance=2.0 * RADIUS)
+    held = HeldForce(mapping=space)
     bad = ImpairedLink(effects=(Steady(0.0), RandomLoss(0.5)))
     for scheme in (StandardWaves(), ModifiedWaves.c2(), PositionForce()):
         for mapping, rest, force in (
             (plane, still[0], Together((ErrorForce(), box))),
-            (space, still[1], Together((ErrorForceAlong(), walls))),
+            (space, still[1], Together((ErrorForceAlong(), walls, held))),
         ):
             for operator in (
                 Prescribed(lambda _, rest=rest: rest),

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from sinuous.live.board import Board, Ring, encoded
-from sinuous.live.layout import TEXT, TIPS, Part, Sizes
+from sinuous.live.layout import TEXT, TIPS, WALLS, Part, Sizes
+from sinuous.teleop.motion import Plane, Walls
 
 SIZES = Sizes(configuration=3, actuators=4, points=5, signals=2)
 
@@ -81,11 +82,13 @@ def test_memory_is_shared_and_given_back() -> None:
         Board.attach(SIZES, name)
 
 
-def test_tips_are_found_by_their_tick() -> None:
-    board = Board.alone(SIZES)
-    tips = np.random.default_rng(0).normal(size=(3 * TIPS, 3))
+def test_tips_and_walls_are_found_by_their_tick() -> None:
+    board, rng = Board.alone(SIZES), np.random.default_rng(0)
+    tips, planes = rng.normal(size=(3 * TIPS, 3)), rng.normal(size=(3 * TIPS, *WALLS))
     for first in range(0, len(tips), 10):
-        board.tell_tips(tips[first : first + 10])
+        held, near = planes[first]
+        board.tell_tips(tips[first : first + 10], Walls(Plane(*held), Plane(*near)))
+        assert np.array_equal(np.array(board.walls(first)), planes[first])
         told = board.get("tips")
         assert np.array_equal(board.tip(told - 1), tips[told - 1])
         assert np.array_equal(board.tip(max(told - 50, 0)), tips[max(told - 50, 0)])

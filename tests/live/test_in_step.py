@@ -17,6 +17,7 @@ from sinuous.live.loops import LATE_STEPS, HandLoop
 from sinuous.live.orders import HandOrder, Pause, Resume, SetFeel, SetLink
 from sinuous.live.path_hand import PathHand
 from sinuous.live.scenario import Recipe
+from sinuous.live.snapshot import Looker
 from sinuous.live.watch import Watch
 from sinuous.recording import Sample
 from sinuous.scenario import Scenario
@@ -102,9 +103,12 @@ class Play:
         return block
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_it_is_the_simulated_session(name: str) -> None:
-    scene, samples = scenario(name), 60
+@pytest.mark.parametrize(
+    ("name", "set"),
+    [*((name, ()) for name in NAMES), ("live_watchdog", ("teleop.force.nearness_mm=20",))],
+)
+def test_it_is_the_simulated_session(name: str, set: tuple[str, ...]) -> None:
+    scene, samples = scenario(name, *set), 60
     expected = list(islice(steps(scene), samples))
     live = InStep(scene, PathHand(scene), SteppedClock())
     watch, kept = Watch(scene, live.board), Kept()
@@ -120,6 +124,25 @@ def test_it_is_the_simulated_session(name: str) -> None:
         assert np.allclose(one.signals, other.signals, rtol=0.0, atol=ROUNDING)
     assert watch.fine == watch.samples == samples
     assert watch.lost == watch.violations == 0
+
+
+def test_a_snapshot_says_what_the_hand_and_the_body_feel() -> None:
+    """The hand goes into the wall; force at the tip, and of the wall on the body, point inward."""
+    leader = Scripted()
+    scene = scenario("live_watchdog", "teleop.delay_ms=1", "teleop.force.stiffness_n_m=40")
+    leader.size = 0.03
+    play, most = Play(scene, leader), 0.0
+    looker, zone = Looker(scene, play.board), scene.zone
+    for _ in range(30):
+        play.run(50)
+        seen = looker.look(1.0)
+        assert seen is not None
+        assert np.array_equal(seen.tip_force, -seen.virtual)  # axes are those of the world
+        if np.any(seen.body_force):
+            normal = zone.nearest(seen.nominal).gradient[seen.pushed]
+            assert seen.body_force @ normal > 0.9 * np.linalg.norm(seen.body_force)
+            most = max(most, float(np.linalg.norm(seen.body_force)))
+    assert most > 0.05
 
 
 def test_on_a_clock_that_keeps_up_nothing_is_late() -> None:

@@ -26,7 +26,14 @@ from sinuous.control.step.data import CONTACTS, Contacts, Model
 from sinuous.control.step.memory import Memory
 from sinuous.control.step.plan import Solved
 from sinuous.control.step.step import Outcome, decide, filtered, first_problem
-from sinuous.control.terms import Costs, QuadraticCost, further_costs, total_quadratics
+from sinuous.control.terms import (
+    Costs,
+    QuadraticCost,
+    further_costs,
+    total_quadratics,
+    total_weights,
+)
+from sinuous.control.wall_force import Walls
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.measurement import Measurement
 from sinuous.robots.robot import Robot
@@ -154,6 +161,10 @@ class ShapeConstrainedMPC:
         return further_costs(self.costs.state)
 
     @cached_property
+    def _tip_weight(self) -> float:
+        return total_weights(self.costs.state, self.robot).tip
+
+    @cached_property
     def memory(self) -> Memory:
         """Scratch of the steps, for each thread its own."""
         return Memory(self.model, self.horizon)
@@ -211,7 +222,7 @@ class ShapeConstrainedMPC:
         if solved.qps == 0 and solved.status in FAILURES:
             return self._hold(state, FAILURES[solved.status], began)
         outcome = decide(self.model, work, prepared, solved, goal, H, f)
-        return self._take(solved, outcome, began)
+        return self._take(solved, outcome, goal, began)
 
     def accept(self, c: ArrayLike, goal: ArrayLike) -> tuple[Array, float]:
         """How much of one step straight from c (n,) to a goal (n,) the safety filter takes.
@@ -244,7 +255,9 @@ class ShapeConstrainedMPC:
             nudge[column : column + 2] = (-1.0) ** k * np.array([0.8, 0.6]) * NUDGE
         return nudge
 
-    def _take(self, solved: Solved, outcome: Outcome, began: float) -> tuple[MPCState, Command]:
+    def _take(
+        self, solved: Solved, outcome: Outcome, goal: Array, began: float
+    ) -> tuple[MPCState, Command]:
         status = self._status(outcome)
         # Nothing is in the way and yet the tip does not move: a straight robot whose target is
         # behind its tip sees no slope. Seen from a plan that is bent a little, there is one.
@@ -277,8 +290,23 @@ class ShapeConstrainedMPC:
                 triangle=outcome.triangle,
                 strength=outcome.strength,
             ),
+            walls=self._walls(outcome, goal),
         )
         return after, Command(rates=outcome.change / self.dt, report=report)
+
+    def _walls(self, outcome: Outcome, goal: Array) -> Walls | None:
+        """What the stage that comes next leans on; nothing without a cost of the tip's error."""
+        weight = self._tip_weight
+        if weight <= 0.0:
+            return None
+        contacts, last = outcome.contacts, int(outcome.contacts.number[0])
+        return Walls(
+            robot=self.robot,
+            c=outcome.plan[0],
+            point=contacts.point[0, :last],
+            push=contacts.push[0, :last] / (2.0 * weight),
+            goal=goal,
+        )
 
     def hold(self, state: MPCState, reason: str) -> tuple[MPCState, Command]:
         """A step that stays where the robot is, forgets the plan and says why."""

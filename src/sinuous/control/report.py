@@ -9,6 +9,7 @@ import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.control.reading import Active, Leaning
+from sinuous.control.wall_force import Walls
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.robots.robot import Robot
 
@@ -61,6 +62,7 @@ class Report:
         workload: how much it had to do
         step_fraction: share of the planned first step that the safety filter accepted
         points: nominal body points after the step (S, 3) [m]
+        walls: that the plan leans on; None of a controller that has no plan, or no longer one
     """
 
     status: Status
@@ -72,6 +74,7 @@ class Report:
     robot: Robot = field(repr=False)
     zone: SafeZone = field(repr=False)
     leaning: Leaning = field(default=Leaning(), repr=False)
+    walls: Walls | None = field(default=None, repr=False)
 
     @property
     def iterations(self) -> int:

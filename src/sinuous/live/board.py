@@ -16,6 +16,7 @@ import numpy as np
 from sinuous.arrays import Array
 from sinuous.live.layout import TEXT, TICKS, TIPS, Part, Sizes, Timed
 from sinuous.live.times import Times
+from sinuous.teleop.motion import Plane, Walls
 
 Row = Any
 """A row of a structured array."""
@@ -87,7 +88,7 @@ class Board:
         self.sizes = sizes
         self.ticks = Ring(self._all["tick"][0], self._all["ticks"])
         self.samples = Ring(self._all["sample"][0], self._all["samples"])
-        self._tips = self._all["tip"][0]
+        self._tips, self._walls = self._all["tip"][0], self._all["wall"][0]
         counts, worst = self._all["counts"][0], self._all["worst"][0]
         self.times = tuple(Times(counts[kind], worst[kind]) for kind in Timed)
 
@@ -147,21 +148,31 @@ class Board:
         """Why a part could not go on; empty if all is well."""
         return "; ".join(bytes(text).decode() for text in self._all["fault"][0] if text)
 
-    def tell_tips(self, tips: Array) -> None:
-        """Where the tip is measured (n, 3) [m] after each of the ticks to come."""
+    def tell_tips(self, tips: Array, walls: Walls) -> None:
+        """Where the tip is measured (n, 3) [m] after each of the ticks to come.
+
+        Arguments:
+            walls: that the controller knows of until then
+        """
         first = int(self._all["tips"][0])
-        self._tips[np.arange(first, first + len(tips)) % TIPS] = tips
+        places = np.arange(first, first + len(tips)) % TIPS
+        self._tips[places], self._walls[places] = tips, walls
         self._all["tips"] = first + len(tips)
 
     def tip(self, ticks: int) -> Array:
         """The tip (3,) [m] as measured after so many ticks."""
         return self._tips[ticks % TIPS].copy()
 
+    def walls(self, ticks: int) -> Walls:
+        """What the controller knew of walls after so many ticks."""
+        held, near = self._walls[ticks % TIPS].copy()
+        return Walls(Plane(*held), Plane(*near))
+
     def close(self) -> None:
         """Let go of the memory, and give it back if this process created it."""
         if self._memory is None:
             return
-        self._all = self._tips = np.zeros(0)
+        self._all = self._tips = self._walls = np.zeros(0)
         del self.ticks, self.samples, self.times
         with suppress(BufferError):  # somebody holds a view: the memory ends with the process
             self._memory.close()

@@ -19,6 +19,7 @@ from sinuous.scenario.teleop_tables import TeleopTable, WavesTable
 from sinuous.session.by_hand import ENERGIES
 from sinuous.teleop.bilateral import Bilateral, BilateralState, Signals
 from sinuous.teleop.kernels import work
+from sinuous.teleop.motion import NO_WALLS, Walls
 
 
 class Tick(NamedTuple):
@@ -28,6 +29,7 @@ class Tick(NamedTuple):
         target: for the tip (3,) [m]
         hand: as the device says
         felt: the force on the hand (3,) [N]
+        stiffness: of walls [N/m]
         share: by which the leader's end takes part
         signals: as they are recorded, see `session.by_hand` (C,)
     """
@@ -35,6 +37,7 @@ class Tick(NamedTuple):
     target: Array
     hand: Hand
     felt: Array
+    stiffness: float
     share: float
     signals: Array
 
@@ -92,8 +95,8 @@ class HandSide:
         """Do what is asked, from the next tick on."""
         self._obey[type(order)](order)
 
-    def tick(self, tip: Array) -> Tick:
-        """One tick, given the measured tip (3,) [m]."""
+    def tick(self, tip: Array, walls: Walls = NO_WALLS) -> Tick:
+        """One tick, given the measured tip (3,) [m] and the walls that its controller knows of."""
         if self._next is not None and self._apart:
             table, self._next = self._next, None
             position = self._hand.position[self._axes]
@@ -102,7 +105,7 @@ class HandSide:
         self._read(self._ticks * self._dt)
         if not self._hand.connected and not self.paused:
             self._pause(Pause())
-        self._state, signals = self._bilateral.step(self._state, tip)
+        self._state, signals = self._bilateral.step(self._state, tip, walls)
         self._ticks += 1
         felt = np.zeros(3)
         felt[self._axes] = -signals.leader.F_m
@@ -111,6 +114,7 @@ class HandSide:
             signals.follower.target_w,
             self._hand,
             felt,
+            self._teleop.table.force.stiffness,
             self._state.leader.share,
             self._row(signals),
         )

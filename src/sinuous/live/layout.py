@@ -9,9 +9,13 @@ import numpy as np
 from sinuous.live.times import BINS
 from sinuous.scenario import Scenario
 from sinuous.session.by_hand import signal_names
+from sinuous.teleop.motion import NO_WALLS
 
 TICKS, TIPS, STEPS = 16384, 1024, 1024
 """Ticks, tips and samples that are kept: about 16, 1 and 10 s."""
+
+WALLS = np.array(NO_WALLS).shape
+"""Of `teleop.motion.Walls` as an array."""
 
 TEXT = 1024  # bytes of what limits the robot, and of faults
 
@@ -85,6 +89,7 @@ class Sizes:
                 ("worst", "f8", (len(Timed), 1)),
                 ("tick", self.tick, (TICKS,)),
                 ("tip", "f8", (TIPS, 3)),  # after so many ticks [m]
+                ("wall", "f8", (TIPS, *WALLS)),  # what was known of them then [m]
                 ("sample", self.sample, (STEPS,)),
             ],
             align=True,
@@ -101,6 +106,7 @@ class Sizes:
                 ("target", "f8", (3,)),  # for the tip [m]
                 ("hand", "f8", (3,)),  # where the device says the hand is [m]
                 ("felt", "f8", (3,)),  # force on the hand [N]
+                ("stiffness", "f8"),  # of walls [N/m]
                 ("share", "f8"),  # by which the leader's end takes part
                 ("held", "i8"),
                 ("connected", "i8"),
@@ -137,6 +143,8 @@ class Sizes:
                 ("known", "i8"),  # cables whose tension the plant knows
                 ("tensions", "f8", (p,)),
                 ("contacts", "f8", (3,)),
+                ("pushed", "i8"),  # body point that walls push the most, see `control.wall_force`
+                ("push", "f8", (3,)),  # on it, by the stiffness [m]
                 ("status", "i8"),  # place in `Status`
                 ("solve_time", "f8"),
                 ("iterations", "i8"),

@@ -81,13 +81,14 @@ class HandLoop:
 
     def _tick(self, tips: int, due: float, began: float) -> None:
         side, board = self._side, self._board
-        tick = side.tick(board.tip(tips))
+        tick = side.tick(board.tip(tips), board.walls(tips))
         board.ticks.write(
             due=due,
             began=began,
             target=tick.target,
             hand=tick.hand.position,
             felt=tick.felt,
+            stiffness=tick.stiffness,
             share=tick.share,
             held=tick.hand.held,
             connected=tick.hand.connected,

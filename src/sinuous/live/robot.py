@@ -12,7 +12,9 @@ from sinuous.live.scenario import ticks_per_step
 from sinuous.measurement import Measurement
 from sinuous.plants.plant import NO_CONTACT, PlantFault
 from sinuous.scenario import Scenario
+from sinuous.session.lookout import Lookout
 from sinuous.session.loop import is_finite, slack_cables, steps_per_sample
+from sinuous.teleop.motion import NO_WALLS
 
 PLANT_TICK = 0.005
 """A plant that is more than the robot's kinematics is stepped by no less than that [s], as far as
@@ -43,7 +45,8 @@ class RobotSide:
         self._steps = 0
         self._begin_sample()
         self._tip = scenario.robot.tip(start)
-        board.tell_tips(self._tip[None])
+        board.tell_tips(self._tip[None], NO_WALLS)
+        self._lookout = Lookout(scenario)
 
     def _begin_sample(self) -> None:
         self._before, self._contacts = self._state.c, NO_CONTACT
@@ -61,13 +64,14 @@ class RobotSide:
         """
         self._state, command = self._controller.step(self._state, target, self._measured)
         commanded()
+        walls = self._lookout.walls(self._state.c, target, command.report)
         held = self._held
         for _ in range(self._ticks // held):
             self._measured = measured = self._plant.step(command.rates, held * self._tick)
             # Until the plant has got there, the tip is where it was seen last.
             tips = np.tile(self._tip, (held, 1))
             tips[-1] = self._tip = measured.tip
-            self._board.tell_tips(tips)
+            self._board.tell_tips(tips, walls)
         assert self._measured is not None
         self._contacts = self._contacts.worst(self._plant.truth.contacts)
         self._clipped = max(self._clipped, command.clipped)
@@ -84,7 +88,7 @@ class RobotSide:
         robot, report, truth = self._scenario.robot, command.report, self._plant.truth
         known = command.tensions if len(command.tensions) else measured.tensions
         active = (*(one.name for one in report.active), *slack_cables(robot, known))
-        ticks = self._stride * self._ticks
+        ticks, walls = self._stride * self._ticks, report.walls
         self._board.samples.write(
             first_tick=(self._steps - self._stride) * self._ticks,
             ticks=ticks,
@@ -106,6 +110,8 @@ class RobotSide:
             known=len(truth.tensions),
             tensions=np.resize(truth.tensions, len(command.rates)) if len(truth.tensions) else 0.0,
             contacts=np.array(self._contacts),
+            pushed=0 if walls is None else walls.pushed,
+            push=0.0 if walls is None else walls.body,
             status=STATUSES.index(report.status),
             solve_time=self._longest,
             iterations=report.iterations,

@@ -14,6 +14,7 @@ def sample_of(
     row: Row,
     *,
     signals: Array,
+    stiffness: float,
     nominal_clearance: float,
     actual_clearance: float,
 ) -> Sample:
@@ -23,6 +24,7 @@ def sample_of(
         robot: that did it
         row: of the robot's side
         signals: of the ticks that belong to it (k, C)
+        stiffness: of walls, as the operator's side has it [N/m]
         nominal_clearance: least clearance of the body's surface in the model [m]
         actual_clearance: that of the plant's body [m]
     """
@@ -53,6 +55,8 @@ def sample_of(
         active=active_names(row),
         tensions=row["tensions"][: row["known"]],
         contacts=row["contacts"],
+        pushed=int(row["pushed"]),
+        body_force=stiffness * row["push"],
         signals=signals,
     )
 

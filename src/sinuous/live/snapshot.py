@@ -33,6 +33,9 @@ class Snapshot:
         hand: where the device says the operator's hand is (3,) [m]
         felt: force on the hand (3,) [N]
         virtual: force at the robot's end (A,) [N]
+        tip_force: on the hand, as it is at the robot's end, drawn at the tip (3,) [N]
+        pushed: of the model's body points, the one that walls push the most
+        body_force: of the walls on that point (3,) [N]; zero if none is in the way
         tracking_error: from the tip to where it should be [m]
         energies: taken in by channel, operator and follower since the start (3,) [J]
         energy_least: smallest of the channel's so far [J]
@@ -64,6 +67,9 @@ class Snapshot:
     hand: Array
     felt: Array
     virtual: Array
+    tip_force: Array
+    pushed: int
+    body_force: Array
     tracking_error: float
     energies: Array
     energy_least: float
@@ -106,7 +112,7 @@ class Looker:
     def __init__(self, scenario: Scenario, board: Board) -> None:
         assert scenario.teleop is not None
         self._scenario, self._board = scenario, board
-        self._tick = scenario.teleop.dt
+        self._tick, self._axes = scenario.teleop.dt, scenario.teleop.mapping.axes
         axes = len(scenario.teleop.axes)
         names = signal_names(scenario.teleop.axes)
         stems = [name.rpartition("_")[0] for name in names]
@@ -143,6 +149,9 @@ class Looker:
             hand=tick["hand"],
             felt=tick["felt"],
             virtual=signals[self._virtual],
+            tip_force=-self._axes @ signals[self._virtual],
+            pushed=int(row["pushed"]),
+            body_force=float(tick["stiffness"]) * row["push"],
             tracking_error=float(np.linalg.norm(signals[self._desired] - signals[self._tip])),
             energies=signals[self._energy],
             energy_least=board.get("least_j"),

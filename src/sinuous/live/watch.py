@@ -66,6 +66,11 @@ class Watch:
         block = self._board.ticks.block(first, ticks, "signals")
         return np.zeros((0, self._board.sizes.signals)) if block is None else block
 
+    def _stiffness(self, row: Row) -> float:
+        """Of walls, in the first of its ticks [N/m]; zero if that is no longer there."""
+        block = self._board.ticks.block(int(row["first_tick"]), 1, "stiffness")
+        return 0.0 if block is None else float(block[0])
+
     def _deal(self, row: Row, signals: Array, *, fine: bool) -> None:
         robot, zone = self._scenario.robot, self._scenario.zone
         if fine:
@@ -84,6 +89,7 @@ class Watch:
                     robot,
                     row,
                     signals=signals,
+                    stiffness=self._stiffness(row),
                     nominal_clearance=self.clearance,
                     actual_clearance=least_clearance(zone, robot, row["actual"]),
                 )

@@ -222,6 +222,8 @@ def _encode_report(sample: Sample, header: Header) -> object:
         ("iterations", str(sample.iterations)),
         ("planes", str(sample.planes)),
         ("step_fraction", repr(float(sample.step_fraction))),
+        ("pushed", str(sample.pushed)),
+        ("body_force", " ".join(repr(f) for f in sample.body_force.tolist())),
         *(("active", what) for what in sample.active),
     ]
     status = ros.diagnostic_msgs__msg__DiagnosticStatus(
@@ -243,6 +245,9 @@ def _decode_report(message: Any) -> dict[str, Any]:
         "iterations": int(values["iterations"]),
         "planes": int(values["planes"]),
         "step_fraction": float(values["step_fraction"]),
+        # Older recordings do not know what walls push.
+        "pushed": int(values.get("pushed", "0")),
+        "body_force": np.array([float(f) for f in values.get("body_force", "0 0 0").split()]),
         "active": tuple(item.value for item in status.values if item.key == "active"),
     }
 

@@ -82,6 +82,9 @@ class Sample:
     tensions: Array = field(default_factory=lambda: np.zeros(0))  # (C,) of the plant's cables [N]
     # deepest penetration of walls [m], largest and total force [N] since the last sample
     contacts: Array = field(default_factory=lambda: np.zeros(3))
+    pushed: int = 0  # body point of the model that walls push the most
+    # (3,) on it by the constraints, for a tip on the spring of the virtual walls [N]
+    body_force: Array = field(default_factory=lambda: np.zeros(3))
     signals: Array = field(default_factory=lambda: np.zeros((0, 0)))  # (k, C) of the ticks
 
 
@@ -124,6 +127,9 @@ class Recording:
     contacts: Array  # (K, 3) penetration [m], largest and total force [N]
 
     signals: Array  # (T, C) of all ticks
+
+    pushed: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))  # (K,)
+    body_force: Array = field(default_factory=lambda: np.zeros((0, 3)))  # (K, 3) [N]
 
     def signal(self, name: str) -> Array:
         """One signal at all ticks (T,), or all with that stem (T, A): "leader_m_x", "leader_m"."""
@@ -172,6 +178,8 @@ class Recording:
             active=tuple(s.active for s in samples),
             tensions=_stack([s.tensions for s in samples], (0,)),
             contacts=_stack([s.contacts for s in samples], (3,)),
+            pushed=np.array([s.pushed for s in samples], dtype=np.int64),
+            body_force=_stack([s.body_force for s in samples], (3,)),
             signals=_join([s.signals for s in samples if s.signals.size], len(header.signals)),
         )
 

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from sinuous.files import Angle, Duration, FieldError, Frequency, Length, Speed
-from sinuous.scenario.control_tables import ControlTable
+from sinuous.scenario.control_tables import ControlTable, LawChoice
 from sinuous.scenario.path import MAX_STEPS
 from sinuous.scenario.plant_tables import PlantTable, SensorTable
 from sinuous.scenario.teleop_tables import TeleopTable
@@ -100,3 +100,12 @@ class ScenarioTable:
     plant: PlantTable = field(default_factory=PlantTable)
     sensor: SensorTable | None = None
     teleop: TeleopTable | None = None
+
+    def __post_init__(self) -> None:
+        felt = self.teleop is not None and self.teleop.force.constraints
+        if felt and self.control.law is not LawChoice.MPC:
+            raise FieldError(
+                ("teleop", "force", "constraints"),
+                expected=f'false with control.law = "{self.control.law.value}": it has none',
+                remedy='Set zone = true in its stead, or control.law = "mpc".',
+            )

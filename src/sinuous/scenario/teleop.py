@@ -24,6 +24,7 @@ from sinuous.teleop.bilateral import Bilateral
 from sinuous.teleop.boundary import BoxForce, ZoneForce
 from sinuous.teleop.drift import DriftCorrection
 from sinuous.teleop.force import ErrorForce, ErrorForceAlong, Together, VirtualForce
+from sinuous.teleop.held import HeldForce, NearForce
 from sinuous.teleop.leader import LeaderDevice
 from sinuous.teleop.mapping import Mapping
 from sinuous.teleop.move_and_wait import MoveAndWait
@@ -171,4 +172,8 @@ def _force(table: ForceTable, mapping: Mapping, mpc: ShapeConstrainedMPC) -> Vir
                 damping=table.damping,
             )
         )
+    if table.constraints:
+        parts.append(HeldForce(mapping=mapping, stiffness=table.stiffness, damping=table.damping))
+    if table.nearness > 0.0:
+        parts.append(NearForce(mapping=mapping, stiffness=table.stiffness))
     return Together(tuple(parts)) if len(parts) > 1 else parts[0]

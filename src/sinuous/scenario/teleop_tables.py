@@ -136,7 +136,9 @@ class ForceTable:
     stiffness: Annotated[Stiffness, _NotNegative] = BoxForce.stiffness
     damping: Annotated[Impedance, _NotNegative] = BoxForce.damping
     boundary: tuple[Side, ...] | None = None  # lower and upper side of a box, for each axis
-    zone: bool = True  # whether the zone's walls are felt
+    zone: bool = True  # whether the zone's walls are felt, by the desired tip
+    constraints: bool = False  # or by the whole body, as the controller's constraints hold it
+    nearness: Annotated[Length, _NotNegative] = 0.0  # room of the body below which it is felt
 
     def __post_init__(self) -> None:
         for low, high in self.boundary or ():
@@ -146,6 +148,12 @@ class ForceTable:
                     expected="a lower and then an upper side for each axis",
                     remedy="It is inside out: put the smaller number first.",
                 )
+        if self.constraints and self.zone:
+            raise FieldError(
+                "zone",
+                expected="false with constraints = true: a wall would be felt twice",
+                remedy="Set zone = false, or take constraints out.",
+            )
 
 
 @dataclass(frozen=True, kw_only=True)

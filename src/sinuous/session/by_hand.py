@@ -8,6 +8,7 @@ from sinuous.arrays import Array
 from sinuous.scenario.path import Leg
 from sinuous.scenario.teleop import Teleoperation
 from sinuous.teleop.bilateral import Signals
+from sinuous.teleop.motion import NO_WALLS, Walls
 
 VECTORS = (
     "leader_m",
@@ -70,9 +71,9 @@ class ByHand:
         """The hand sets out on a leg of the path."""
         self._leg, self._began = leg, self._count * self.tick
 
-    def target(self, tip: Array) -> Array:
+    def target(self, tip: Array, walls: Walls = NO_WALLS) -> Array:
         """One tick: what arrived of where the hand is (3,) [m], given the measured tip."""
-        self._state, signals = self._bilateral.step(self._state, tip)
+        self._state, signals = self._bilateral.step(self._state, tip, walls)
         self._count += 1
         self._ticks.append(signals)
         return signals.follower.target_w

@@ -10,6 +10,7 @@ from sinuous.errors import InputError
 from sinuous.scenario import Scenario
 from sinuous.scenario.path import Leg
 from sinuous.session.by_hand import ByHand
+from sinuous.teleop.motion import NO_WALLS, Walls
 
 
 class Guide(Protocol):
@@ -29,8 +30,13 @@ class Guide(Protocol):
         """A leg of the path begins."""
         ...
 
-    def target(self, tip: Array) -> Array:
-        """The target (3,) [m] of the tick that begins, given the tip (3,) [m] as last measured."""
+    def target(self, tip: Array, walls: Walls = NO_WALLS) -> Array:
+        """The target (3,) [m] of the tick that begins.
+
+        Arguments:
+            tip: as last measured (3,) [m]
+            walls: that the controller knows of
+        """
         ...
 
     def take(self) -> Array:
@@ -56,7 +62,7 @@ class AlongThePath:
         """Set out on a leg."""
         self._leg, self._steps = leg, 0
 
-    def target(self, tip: Array) -> Array:
+    def target(self, tip: Array, walls: Walls = NO_WALLS) -> Array:
         """The place on the path at the end of the step."""
         assert self._leg is not None
         self._steps += 1

@@ -8,7 +8,7 @@ import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.control.controller import ControllerState
-from sinuous.control.report import Command
+from sinuous.control.report import Command, Report
 from sinuous.measurement import Measurement
 from sinuous.plants.plant import NO_CONTACT, Contacts, PlantFault, Truth
 from sinuous.recording import Sample, status_name
@@ -17,7 +17,9 @@ from sinuous.robots.robot import Robot
 from sinuous.scenario import Scenario
 from sinuous.scenario.path import Leg
 from sinuous.session.guide import guide_of
+from sinuous.session.lookout import Lookout
 from sinuous.session.surface import SurfaceClearance, least_clearance
+from sinuous.teleop.motion import NO_WALLS
 
 # A body whose points all move slower than this [m/s], for that many steps, rests.
 REST_SPEED = 1e-4
@@ -55,7 +57,8 @@ class _Loop:
         self._surface = SurfaceClearance.of(scenario.robot, scenario.zone)
         self._state: ControllerState = self._controller.init(start)
         self._measured: Measurement | None = None
-        self._tip = scenario.robot.tip(start)
+        self._tip, self._walls = scenario.robot.tip(start), NO_WALLS
+        self._lookout = Lookout(scenario)
         self._steps = 0
 
     @property
@@ -119,13 +122,14 @@ class _Loop:
     def _step(self) -> tuple[Command, Array]:
         """One control step: the controller acts in the first of its ticks."""
         guide, plant, tick = self._guide, self._plant, self._guide.tick
-        target = guide.target(self._tip)
+        target = guide.target(self._tip, self._walls)
         self._state, command = self._controller.step(self._state, target, self._measured)
+        walls = self._lookout.walls(self._state.c, target, command.report)
         measured = plant.step(command.rates, tick)
         for _ in range(1, self._ticks):
-            guide.target(measured.tip)
+            guide.target(measured.tip, walls)
             measured = plant.step(command.rates, tick)
-        self._measured, self._tip = measured, measured.tip
+        self._measured, self._tip, self._walls = measured, measured.tip, walls
         return command, target
 
 
@@ -177,6 +181,13 @@ def is_finite(measured: Measurement, truth: Truth) -> bool:
     return all(bool(np.all(np.isfinite(value))) for value in values)
 
 
+def _body_force(scenario: Scenario, report: Report) -> Array:
+    """Of walls on the point that they push the most (3,) [N]; zero without an operator."""
+    if scenario.teleop is None or report.walls is None:
+        return np.zeros(3)
+    return scenario.teleop.table.force.stiffness * report.walls.body
+
+
 def _sample(
     scenario: Scenario,
     *,
@@ -220,5 +231,7 @@ def _sample(
         active=(*(active.name for active in report.active), *slack_cables(robot, known)),
         tensions=truth.tensions,
         contacts=np.array(contacts),
+        pushed=0 if report.walls is None else report.walls.pushed,
+        body_force=_body_force(scenario, report),
         signals=signals,
     )

@@ -12,6 +12,7 @@ from sinuous.teleop.leader_end import LeaderEnd, LeaderSignals, LeaderState
 from sinuous.teleop.limits import Limits
 from sinuous.teleop.link import ConstantDelay, Link, LinkModel
 from sinuous.teleop.mapping import Mapping
+from sinuous.teleop.motion import NO_WALLS, Walls
 from sinuous.teleop.operators import O, Operator
 from sinuous.teleop.passivity import PassivityControl
 from sinuous.teleop.ramp import Ramp
@@ -177,12 +178,18 @@ class Bilateral(Generic[O]):
         """Have both join it again."""
         return state._replace(leader=self.leader.resume(state.leader))
 
-    def step(self, state: BilateralState[O], tip_w: ArrayLike) -> tuple[BilateralState[O], Signals]:
-        """One tick, given the follower's measured tip (3,) [m]; never raises for bad numbers."""
+    def step(
+        self, state: BilateralState[O], tip_w: ArrayLike, walls: Walls = NO_WALLS
+    ) -> tuple[BilateralState[O], Signals]:
+        """One tick, given the follower's measured tip (3,) [m]; never raises for bad numbers.
+
+        Arguments:
+            walls: that the follower's controller knows of
+        """
         leader, follower, forward, backward, to_leader, to_follower = state
         time = leader.tick * self.leader.scheme.dt
         leader, at_leader, ahead = self.leader.step(leader, to_leader)
-        follower, at_follower, back = self.follower.step(follower, tip_w, to_follower)
+        follower, at_follower, back = self.follower.step(follower, tip_w, to_follower, walls)
         after = BilateralState(
             leader, follower, forward, backward, backward.step(back), forward.step(ahead)
         )

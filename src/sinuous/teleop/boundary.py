@@ -8,8 +8,8 @@ from sinuous.arrays import Array, ArrayLike
 from sinuous.geometry.safe_zone import SafeZone
 from sinuous.teleop import kernels, walls
 from sinuous.teleop.checks import vector, zero_or_more
-from sinuous.teleop.force import Motion
 from sinuous.teleop.mapping import Mapping
+from sinuous.teleop.motion import Motion
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

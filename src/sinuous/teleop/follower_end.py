@@ -9,10 +9,12 @@ import numpy as np
 from sinuous.arrays import Array, ArrayLike
 from sinuous.teleop import kernels
 from sinuous.teleop.drift import DriftCorrection
-from sinuous.teleop.force import Motion, VirtualForce
+from sinuous.teleop.force import VirtualForce
+from sinuous.teleop.held import Settling
 from sinuous.teleop.limits import Limits
 from sinuous.teleop.link import Packet
 from sinuous.teleop.mapping import Mapping
+from sinuous.teleop.motion import NO_WALLS, Motion, Walls
 from sinuous.teleop.passivity import PassivityControl
 from sinuous.teleop.ports import FollowerPort, PortMemory
 from sinuous.teleop.ramp import Ramp
@@ -31,6 +33,7 @@ class FollowerState(NamedTuple):
         share: rho, by which the end takes part, see `Ramp`
         running: whether it wants to
         apart: of the leader, where the desired point belongs (A,) [m]; None for where it is itself
+        walls: that the force knows of
     """
 
     X_sd: Array
@@ -41,6 +44,7 @@ class FollowerState(NamedTuple):
     share: float
     running: bool
     apart: Array | None
+    walls: Walls = NO_WALLS
 
 
 class FollowerSignals(NamedTuple):
@@ -82,6 +86,7 @@ class FollowerEnd:
         control: of passivity; None for none
         limits: of the desired velocity without a force [m/s], [m/s^2]; None for none
         ramp: for joining and leaving
+        settling: of what the controller knows of walls
 
     Raises:
         ValueError: if force and mapping differ in their axes, or control is asked for with a
@@ -96,6 +101,7 @@ class FollowerEnd:
     control: PassivityControl | None = None
     limits: Limits | None = None
     ramp: Ramp = field(default_factory=Ramp)
+    settling: Settling = field(default_factory=Settling)
 
     def __post_init__(self) -> None:
         zero, _ = self._zero, self.port
@@ -134,10 +140,14 @@ class FollowerEnd:
         return state._replace(running=True)
 
     def step(
-        self, state: FollowerState, tip_w: ArrayLike, received: Packets
+        self, state: FollowerState, tip_w: ArrayLike, received: Packets, walls: Walls = NO_WALLS
     ) -> tuple[FollowerState, FollowerSignals, Packet]:
-        """One tick, given the follower's measured tip (3,) [m]: force, target and what is sent."""
-        X_sd, V_before, X_before, port, tank, share, running, apart = state
+        """One tick, given the follower's measured tip (3,) [m]: force, target and what is sent.
+
+        Arguments:
+            walls: that its controller knows of
+        """
+        X_sd, V_before, X_before, port, tank, share, running, apart, seen = state
         dt, zero = self.scheme.dt, self._zero
         (X_s, V_s), X_next = self.mapping.watch(tip_w, X_before, dt), np.empty(zero.size)
         inbox = self.receiver.step(port.inbox, received, port.number, dt)
@@ -146,7 +156,9 @@ class FollowerEnd:
             if share == 0.0 and joins:
                 X_sd, V_before, apart = X_s, zero, _apart(inbox, X_s)
             share = self.ramp.step(share, dt, join=joins)
-        F_s = self.force.force(Motion(X_sd, V_before, X_s, V_s))
+        place = self.mapping.place
+        seen = self.settling.step(seen, walls, place(X_sd), place(X_s), dt)
+        F_s = self.force.force(Motion(X_sd, V_before, X_s, V_s, *seen))
         if share == 1.0:
             port, V_sd, packet = self.port.answer(port, inbox, F_s, X_sd, running)
             if self.correction is not None and inbox.position is not None:
@@ -159,7 +171,7 @@ class FollowerEnd:
             return self._rest(state, X_s, inbox)
         target = self.mapping.place(X_next)
         signals = FollowerSignals(X_sd, V_sd, X_s, F_s, target, port.wave, inbox.fault)
-        after = FollowerState(X_next, V_sd, X_s, port, tank, share, running, apart)
+        after = FollowerState(X_next, V_sd, X_s, port, tank, share, running, apart, seen)
         return after, signals, packet
 
     def _correct(

@@ -7,27 +7,14 @@ A7).
 """
 
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 
 from sinuous.arrays import Array
 from sinuous.teleop import energy_kernels, kernels
 from sinuous.teleop.checks import positive, zero_or_more
-
-
-class Motion(NamedTuple):
-    """Where the follower should be, and where it is, on the wave side (A,).
-
-    Arguments:
-        X_sd, V_sd: desired [m], and its velocity over the last tick [m/s]
-        X_s, V_s: measured [m], and its velocity over the last tick [m/s]
-    """
-
-    X_sd: Array
-    V_sd: Array
-    X_s: Array
-    V_s: Array
+from sinuous.teleop.motion import Motion
 
 
 class VirtualForce(Protocol):

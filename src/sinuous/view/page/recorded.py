@@ -86,8 +86,8 @@ class Recorded:
             wall=foot,
             clearance=clearance,
             tip_force=self.forces[k],
-            pushed=0,
-            body_force=np.zeros(3),
+            pushed=int(recording.pushed[k]),
+            body_force=recording.body_force[k],
         )
 
 
