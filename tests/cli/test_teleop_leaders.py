@@ -38,7 +38,7 @@ def test_makers_can_be_sent_to_another_process(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("joystick", "expected one of recorded, keyboard"),
+        ("joystick", "expected one of gizmo, recorded, keyboard"),
         ("gamepad", "expected a gamepad"),
         ("spacemouse", "expected a SpaceMouse"),
         ("haply", "expected the Haply Inverse service"),

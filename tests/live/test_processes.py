@@ -13,7 +13,8 @@ import pytest
 
 from sinuous.cli.teleop_leaders import csv_hand
 from sinuous.live import LiveEnd, LiveSession, PathHand, Recipe, Snapshot
-from sinuous.live.orders import Pause, Reset, SetLink, Stop
+from sinuous.live.orders import Pause, Record, Reset, SetLink, Stop
+from sinuous.live.session import following
 from sinuous.recording import read
 
 SCENARIOS = Path(__file__).parents[2] / "examples" / "scenarios"
@@ -130,7 +131,7 @@ def test_a_process_that_dies_is_said_and_a_patient_session_begins_again() -> Non
         told.append(fault)
         session.order(Reset(set=("mpc.horizon=4",)))
 
-    def started(scenario: object) -> None:
+    def started(scenario: object, recipe: Recipe) -> None:
         if told:
             session.order(Stop())
 
@@ -170,3 +171,53 @@ def test_a_device_that_is_not_there_is_said() -> None:
     result = LiveSession(Recipe(str(WATCHDOG)), nowhere).run(PATIENCE)
     assert result.end is LiveEnd.FAILED
     assert "the operator's side: nowhere.csv" in result.fault
+
+
+def test_what_cannot_be_is_refused_and_a_recording_goes_on_in_another_folder(
+    tmp_path: Path,
+) -> None:
+    why, recipes, seen = list[str](), list[Recipe](), list[Snapshot]()
+    nowhere = tmp_path / "a file, not a folder"
+    nowhere.write_text("", encoding="utf-8")
+
+    def observe(snapshot: Snapshot) -> None:
+        seen.append(snapshot)
+        if len(seen) == 1:
+            session.order(Reset(scenario="nowhere.toml"))
+        elif len(seen) == 5:
+            assert len(recipes) == 1, "nothing has changed"
+            session.order(Reset(set=("mpc.horizon=3",)))
+        elif len(recipes) == 2 and len(why) == 1:
+            session.order(Record(str(nowhere / "run")))
+        elif len(why) == 2:
+            session.order(Stop())
+
+    session = LiveSession(
+        Recipe(str(WATCHDOG)),
+        PathHand,
+        started=lambda _, recipe: recipes.append(recipe),
+        observe=observe,
+        refused=why.append,
+    )
+    result = session.run(PATIENCE, record=str(tmp_path / "run"))
+    assert result.end is LiveEnd.STOPPED
+    assert "nowhere.toml" in why[0]
+    assert "recording has ended" in why[1]
+    assert [recipe.set for recipe in recipes] == [(), ("mpc.horizon=3",)]
+    for name, horizon in (("run", "horizon = 5"), ("run-2", "horizon = 3")):
+        assert horizon in read(str(tmp_path / name / "run.mcap")).header.scenario
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (None, None),
+        ("run", "run-2"),
+        ("run-2", "run-3"),
+        ("run-9", "run-10"),
+        ("live-2026-11-25-101500", "live-2026-11-25-101500-2"),
+        ("far-away/run", "far-away/run-2"),
+    ],
+)
+def test_recordings_that_follow_one_another(before: str | None, after: str | None) -> None:
+    assert following(before) == after

@@ -129,7 +129,7 @@ class LiveSession:
             self._recipe, self._leader, self._clock, baseline=self._baseline, observe=self._observe
         )
         try:
-            act.record(self._folder)
+            self._record(act, self._folder)
             fault = act.get_ready()
             if not fault:
                 self._started(act.scenario, self._recipe)

@@ -24,7 +24,7 @@ def run_page(desk: Desk, inbox: "Connection[Any, Any]", orders: "Connection[Any,
         orders: to the session: `Serving`, then orders
     """
     leave_ctrl_c_to_the_parent()
-    server = start_server(desk.port, "sinuous")
+    server = start_server(desk.port, "sinuous", wide=False)
     sending = Lock()  # callbacks come from several threads
 
     def order(asked: Order) -> None:

@@ -9,11 +9,12 @@ HOST = "127.0.0.1"
 """Whoever reaches the page moves the robot: this machine only."""
 
 
-def start_server(port: int, label: str) -> viser.ViserServer:
-    """A page with its panel on the right, at a port or the next one that is free."""
+def start_server(port: int, label: str, *, wide: bool = True) -> viser.ViserServer:
+    """A page with its panel on the right, wide or not, at a port or the next one that is free."""
     with redirect_stdout(StringIO()):  # who asked for the page says where it is
         server = viser.ViserServer(host=HOST, port=port, label=label, verbose=False)
-    server.gui.configure_theme(control_width="large", show_logo=False, show_share_button=False)
+    width = "large" if wide else "medium"
+    server.gui.configure_theme(control_width=width, show_logo=False, show_share_button=False)
     server.gui.main_panel.dock_right()
     return server
 

@@ -62,6 +62,11 @@ class PageSupervisor:
         if self._thread is not None:
             self._thread.join()
 
+    @property
+    def pid(self) -> int | None:
+        """Of the page's process, while there is one."""
+        return None if self._process is None else self._process.pid
+
     def serve(self, session: LiveSession) -> None:
         """Start the page; its orders go to that session."""
         orders = self._start()
