@@ -33,8 +33,8 @@ class Picture:
 
 
 GALLERY = (
-    Picture(name="live_1400", scenario="live_watchdog", after=6.5, width=1400, height=900),
-    Picture(name="live_1000", scenario="live_jointed", after=9.5, width=1000, height=700),
+    Picture(name="live_1400", scenario="live_watchdog", after=4.0, width=1400, height=900),
+    Picture(name="live_1000", scenario="live_jointed", after=10.5, width=1000, height=700),
 )
 
 
