@@ -155,4 +155,3 @@ def test_landmarks_give_the_base_and_a_click_finds_the_mesh(page: Any, stand: St
         if registering._places[3].value:
             break
     assert registering._places[3].value, "the middle of the page looks at the tube"
-    page.screenshot(path="/tmp/setup2.png", full_page=True)
