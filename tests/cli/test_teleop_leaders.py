@@ -17,6 +17,8 @@ import pytest
 
 from sinuous.arrays import Array
 from sinuous.cli import teleop_leaders
+from sinuous.cli.teleop import teleop
+from sinuous.cli.teleop_arguments import Teleop
 from sinuous.cli.teleop_leaders import MOVED, leader_choice, recorded_run
 from sinuous.errors import InputError
 from sinuous.leaders import Gizmo, Haply, Leader, TerminalKeyboard, Trajectory
@@ -184,3 +186,8 @@ def test_the_terminal_itself_is_the_default(
     with TerminalKeyboard():
         assert not termios.tcgetattr(terminal[1])[3] & termios.ICANON
     assert termios.tcgetattr(terminal[1])[3] & termios.ICANON
+
+
+def test_a_gizmo_without_its_page_is_refused() -> None:
+    with pytest.raises(InputError, match="needs no page"):
+        teleop(Teleop(leader="gizmo", browser=False))

@@ -177,6 +177,7 @@ def test_what_cannot_be_is_refused_and_a_recording_goes_on_in_another_folder(
     tmp_path: Path,
 ) -> None:
     why, recipes, seen = list[str](), list[Recipe](), list[Snapshot]()
+    folders = list[str | None]()
     nowhere = tmp_path / "a file, not a folder"
     nowhere.write_text("", encoding="utf-8")
 
@@ -197,12 +198,14 @@ def test_what_cannot_be_is_refused_and_a_recording_goes_on_in_another_folder(
         PathHand,
         started=lambda _, recipe: recipes.append(recipe),
         observe=observe,
+        recording=folders.append,
         refused=why.append,
     )
     result = session.run(PATIENCE, record=str(tmp_path / "run"))
     assert result.end is LiveEnd.STOPPED
     assert "nowhere.toml" in why[0]
     assert "recording has ended" in why[1]
+    assert folders == [str(tmp_path / "run"), str(tmp_path / "run-2"), None]
     assert [recipe.set for recipe in recipes] == [(), ("mpc.horizon=3",)]
     for name, horizon in (("run", "horizon = 5"), ("run-2", "horizon = 3")):
         assert horizon in read(str(tmp_path / name / "run.mcap")).header.scenario

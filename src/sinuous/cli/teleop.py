@@ -13,6 +13,7 @@ from sinuous.cli.codes import GOOD, INTERRUPTED, NEGATIVE
 from sinuous.cli.teleop_arguments import Teleop
 from sinuous.cli.teleop_leaders import GIZMO, RECORDED, leader_choice
 from sinuous.cli.teleop_table import print_live
+from sinuous.errors import InputError
 from sinuous.files import write_text
 from sinuous.live import LiveEnd, LiveSession, Recipe
 from sinuous.view.page.hands import hands_of
@@ -56,6 +57,7 @@ def teleop(arguments: Teleop) -> int:
                 patient=True,
                 started=page.started,
                 observe=page.observe,
+                recording=page.recording,
                 failed=lambda fault: _failed(page, fault),
                 refused=page.tell,
             )
@@ -113,7 +115,14 @@ def _check(arguments: Teleop) -> None:
     """Refuse what would be found out too late, in another process.
 
     Raises:
-        InputError: if duration or port cannot be
+        InputError: if duration, port or hand cannot be
     """
     check_duration(arguments.duration)
     check_port(arguments.port)
+    if arguments.leader == GIZMO and not arguments.browser:
+        raise InputError(
+            file="--leader",
+            expected="a hand that needs no page, with --no-browser",
+            found=f'"{GIZMO}", which is dragged on the page',
+            remedy="Leave --no-browser out, or take another hand, such as --leader recorded.",
+        )

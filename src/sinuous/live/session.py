@@ -69,6 +69,7 @@ class LiveSession:
         started: called with the scenario and its recipe before the first tick, and after a reset
         observe: called with a snapshot 30 times a second; it holds up judging and recording only
         failed: called with what went wrong
+        recording: called with the folder of a recording that begins, None when one is over
         refused: called with why an order is not followed, or recording has ended; None if a
             recording that fails shall end the session
         clock: of the machine
@@ -84,13 +85,14 @@ class LiveSession:
         started: Callable[[Scenario, Recipe], None] = _nothing,
         observe: Callable[[Snapshot], None] = _nothing,
         failed: Callable[[str], None] = _nothing,
+        recording: Callable[[str | None], None] = _nothing,
         refused: Callable[[str], None] | None = None,
         clock: Clock | None = None,
     ) -> None:
         self._recipe, self._leader, self._baseline = recipe, leader, baseline
         self._patient = patient
         self._started, self._observe, self._failed = started, observe, failed
-        self._refused = refused
+        self._recording, self._refused = recording, refused
         self._clock = clock or WallClock()
         self._asked = SimpleQueue[Order]()
         self._senders = list["Connection[Any, Any]"]()
@@ -194,6 +196,8 @@ class LiveSession:
             act.record(folder)
         except InputError as error:
             self._give_up_recording(act, error)
+        else:
+            self._recording(folder)
 
     def _turn(self, act: Act) -> None:
         try:
@@ -207,6 +211,7 @@ class LiveSession:
             raise error
         self._folder = None
         act.stop_recording()
+        self._recording(None)
         self._refused(f"recording has ended: {error}")
 
     def _orders(self) -> list[Order]:

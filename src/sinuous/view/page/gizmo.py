@@ -1,7 +1,7 @@
 """The target that is dragged: from a drag on the page to an order."""
 
 from collections.abc import Callable
-from itertools import count
+from time import monotonic
 
 import numpy as np
 import viser
@@ -31,7 +31,7 @@ class TargetGizmo:
         size: float,
         place: Array,
     ) -> None:
-        self._order, self._stamps = order, count(1)
+        self._order = order
         self._handle = scene.add_transform_controls(
             NAME,
             scale=size * PER_METRE,
@@ -46,9 +46,9 @@ class TargetGizmo:
         self.aim()
 
     def aim(self) -> None:
-        """Ask for where it is."""
+        """Ask for where it is; the clock's stamp grows over the death of a page's process, too."""
         target = np.asarray(self._handle.position, dtype=np.float64) / PER_METRE
-        self._order(Aim(target=target, stamp=float(next(self._stamps))))
+        self._order(Aim(target=target, stamp=monotonic()))
 
     def put(self, place: Array) -> None:
         """Take it to a place (3,) [m], and ask for that."""

@@ -46,6 +46,17 @@ class Begun:
 
 
 @dataclass(frozen=True)
+class Recording:
+    """Whether what happens is recorded.
+
+    Arguments:
+        folder: where to; None if it is not
+    """
+
+    folder: str | None
+
+
+@dataclass(frozen=True)
 class Told:
     """Something that people should read.
 

@@ -43,8 +43,6 @@ class Page:
         self._stage: Stage | None = None
         self._gizmo: TargetGizmo | None = None
         self._tip, self._parted, self._frames = np.zeros(3), False, count()
-        server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="medium")
-        server.gui.main_panel.dock_right()
         self._panel = Panel(server, order, hands, self._rejoin)
         tab = self._panel.tabs.add_tab("Setup")
         self._setup = Setup(server, order, self._tell, tab=tab)
@@ -97,6 +95,10 @@ class Page:
     def close(self) -> None:
         """Leave nothing behind."""
         self._setup.close()
+
+    def recording(self, folder: str | None) -> None:
+        """Show whether what happens is recorded."""
+        self._panel.recording(folder)
 
     def tell(self, text: str, *, lasting: bool) -> None:
         """Say something that people should read."""

@@ -37,8 +37,9 @@ class Panel:
         hands: dict[str, LeaderMaker],
         resume: Callable[[], None],
     ) -> None:
-        self._server, self._order, self._hands, self._before = server, order, hands, resume
-        self._paused, self._folder, self._told = False, "", ("", 0.0)
+        self._order, self._before = order, resume
+        self._paused, self._told = False, ("", 0.0)
+        self._folder: str | None = None
         self._shown = ""
         gui = server.gui
         self._title = gui.add_markdown("**starting ...**")
@@ -69,9 +70,15 @@ class Panel:
     def begin(self, scenario: Scenario) -> None:
         """Show what a scenario has."""
         assert scenario.teleop is not None
+        self._told = ("", 0.0)  # what stood in the way is over
         self._title.content = f"**{scenario.name}**: {scenario.robot.name}"
         self._link.take(scenario.teleop.table)
         self._robot.take(scenario)
+
+    def recording(self, folder: str | None) -> None:
+        """Show whether what happens is recorded, as the session says."""
+        self._folder = folder
+        self._record.label = "Record" if folder is None else "Stop recording"
 
     def tell(self, text: str, *, lasting: bool) -> None:
         """Say something above everything else."""
@@ -125,14 +132,11 @@ class Panel:
             self._order(Pause())
 
     def _record_or_not(self) -> None:
-        if self._folder:
-            self._order(Record(None))
-            self.tell(f"Recorded. To look at it: sinuous replay {self._folder}", lasting=False)
-            self._folder = ""
+        if self._folder is None:
+            self._order(Record(RECORDINGS + strftime("%Y-%m-%d-%H%M%S")))
         else:
-            self._folder = RECORDINGS + strftime("%Y-%m-%d-%H%M%S")
-            self._order(Record(self._folder))
-        self._record.label = "Stop recording" if self._folder else "Record"
+            self.tell(f"Recorded. To look at it: sinuous replay {self._folder}", lasting=False)
+            self._order(Record(None))
 
 
 def _photograph(event: "viser.GuiEvent[viser.GuiButtonHandle]") -> None:

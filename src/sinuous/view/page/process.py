@@ -9,7 +9,7 @@ from typing import Any
 from sinuous.live import Snapshot
 from sinuous.live.machine import leave_ctrl_c_to_the_parent
 from sinuous.live.orders import Order
-from sinuous.view.page.messages import Begun, Desk, Serving, Told
+from sinuous.view.page.messages import Begun, Desk, Recording, Serving, Told
 from sinuous.view.page.page import Page
 from sinuous.view.page.server import address_of, start_server, stop_server
 
@@ -58,6 +58,8 @@ def _deal(page: Page, messages: list[object]) -> None:
         match message:
             case Begun():
                 page.begin(message.recipe)
+            case Recording():
+                page.recording(message.folder)
             case Told():
                 page.tell(message.text, lasting=message.lasting)
             case Snapshot():

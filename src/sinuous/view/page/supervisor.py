@@ -13,7 +13,7 @@ from sinuous.live import LiveSession, Recipe, Snapshot
 from sinuous.live.orders import Pause
 from sinuous.live.processes import LeaderMaker
 from sinuous.scenario import Scenario
-from sinuous.view.page.messages import Begun, Desk, Serving, Told
+from sinuous.view.page.messages import Begun, Desk, Recording, Serving, Told
 from sinuous.view.page.outbox import Outbox
 
 PATIENCE = 3.0  # for the process to end by itself [s]
@@ -47,6 +47,7 @@ class PageSupervisor:
         self._lock, self._ending = Lock(), Event()
         self._outbox: Outbox | None = None
         self._begun: Begun | None = None
+        self._recording = Recording(None)
         self._process: SpawnProcess | None = None
         self._thread: Thread | None = None
 
@@ -82,8 +83,16 @@ class PageSupervisor:
 
     def observe(self, snapshot: Snapshot) -> None:
         """How things are."""
-        if self._outbox is not None:
-            self._outbox.show(snapshot)
+        outbox = self._outbox  # another thread may take it away
+        if outbox is not None:
+            outbox.show(snapshot)
+
+    def recording(self, folder: str | None) -> None:
+        """What happens is recorded into a folder, or no longer."""
+        with self._lock:
+            self._recording = Recording(folder)
+            if self._outbox is not None:
+                self._outbox.send(self._recording)
 
     def tell(self, text: str, *, lasting: bool = False) -> None:
         """Show a text."""
@@ -107,6 +116,7 @@ class PageSupervisor:
             self._outbox = Outbox(to_page)
             if self._begun is not None:
                 self._outbox.send(self._begun)
+            self._outbox.send(self._recording)
         return orders
 
     def _watch(self, session: LiveSession, orders: "Connection[Any, Any]") -> None:
